@@ -9,34 +9,34 @@
 #include <cairn/core/error.hpp>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/stereo_pair.hpp>
-#include <cairn/matching/epipolar_correction.hpp>  // correct_epipolar
-#include <cairn/matching/match.hpp>              // match_windows
-#include <cairn/matching/semi_global.hpp>        // match, match_semi_global
-#include <cairn/matching/subpixel.hpp>           // refine_subpixel
-#include <cairn/disparity/left_right.hpp>        // reject_inconsistent
-#include <cairn/disparity/uniqueness.hpp>        // reject_ambiguous
-#include <cairn/disparity/flatness.hpp>          // reject_flat
-#include <cairn/disparity/texture.hpp>           // reject_textureless
-#include <cairn/disparity/disparity_map.hpp>     // combine, external_disparity
+#include <cairn/stereo/epipolar_correction.hpp>  // correct_epipolar
+#include <cairn/stereo/match.hpp>              // match_windows
+#include <cairn/stereo/semi_global.hpp>        // match, match_semi_global
+#include <cairn/stereo/subpixel.hpp>           // refine_subpixel
+#include <cairn/stereo/left_right.hpp>        // reject_inconsistent
+#include <cairn/stereo/uniqueness.hpp>        // reject_ambiguous
+#include <cairn/stereo/flatness.hpp>          // reject_flat
+#include <cairn/stereo/texture.hpp>           // reject_textureless
+#include <cairn/stereo/disparity_map.hpp>     // combine, external_disparity
 #include <cairn/image/noise.hpp>                 // noise_sigma
-#include <cairn/grouping/evidence.hpp>          // find_evidence
+#include <cairn/regions/evidence.hpp>          // find_evidence
 #include <cairn/scene/ground_plane.hpp>      // fit_ground, reject_below_ground, label_floor
 #include <cairn/scene/floor_frame.hpp>       // floor_frame
-#include <cairn/disparity/speckle.hpp>           // reject_speckles
-#include <cairn/disparity/confidence.hpp>        // estimate_confidence
+#include <cairn/stereo/speckle.hpp>           // reject_speckles
+#include <cairn/stereo/confidence.hpp>        // estimate_confidence
 #include <cairn/scene/background.hpp>        // fit_background
 #include <cairn/image/gradient.hpp>            // gradient, edge_strength
-#include <cairn/disparity/gradient.hpp>        // quantised, gradient
+#include <cairn/stereo/gradient.hpp>        // quantised, gradient
 #include <cairn/regions/watershed.hpp>           // watershed
 #include <cairn/regions/region_graph.hpp>        // build_graph, apply_merges
 #include <cairn/regions/grow_statistical.hpp>    // grow_statistical
 #include <cairn/regions/grow_near_to_far.hpp>    // grow_near_to_far
 #include <cairn/regions/segment_intensity.hpp>   // segment_intensity
 #include <cairn/regions/segment_disparity.hpp>   // segment_disparity
-#include <cairn/grouping/superpixels.hpp>       // cut_superpixels
-#include <cairn/grouping/object_hints.hpp>      // hint_objects
-#include <cairn/grouping/merge_tree.hpp>        // grow_merge_tree
-#include <cairn/grouping/choose_objects.hpp>    // choose_objects, groups_of
+#include <cairn/regions/superpixels.hpp>       // cut_superpixels
+#include <cairn/regions/object_hints.hpp>      // hint_objects
+#include <cairn/regions/merge_tree.hpp>        // grow_merge_tree
+#include <cairn/regions/choose_objects.hpp>    // choose_objects, groups_of
 #include <cairn/objects/fuse.hpp>                // fuse
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/objects/locate.hpp>              // locate

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <batch/shard.hpp>
-#include <batch/summary.hpp>
-#include <batch/zstd_packer.hpp>
+#include <cairn/batch/shard.hpp>
+#include <cairn/batch/summary.hpp>
+#include <cairn/batch/zstd_packer.hpp>
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/config_files.hpp>
 #include <cmath>
-#include <io/atomic_file.hpp>
-#include <io/config_files.hpp>
 #include <iostream>
 #include <string_view>
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
-#include <io/calibration_files.hpp>
-#include <io/config_files.hpp>
-#include <io/frame_names.hpp>
-#include <io/read_file.hpp>
-#include <io/sha256.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/io/frame_names.hpp>
+#include <cairn/io/read_file.hpp>
+#include <cairn/io/sha256.hpp>
 #include <system_error>
 
 namespace cairn::cli {

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <batch/run.hpp>
+#include <cairn/batch/run.hpp>
+#include <cairn/input/sequence.hpp>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
-#include <source/sequence.hpp>
 #include <string>
 #include <vector>
 

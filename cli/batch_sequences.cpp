@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <cairn/input/mcap_sequence.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/live/sequence_run.hpp>
+#include <cairn/output/follow_files.hpp>
+#include <cairn/sequence/follow_config.hpp>
 #include <cstdlib>
-#include <io/config_files.hpp>
 #include <nlohmann/json.hpp>
-#include <source/follow_files.hpp>
-#include <source/mcap_sequence.hpp>
-#include <source/sequence_run.hpp>
-#include <tracking/follow_config.hpp>
 
 #include "batch_frames.hpp"
 #include "follow_options.hpp"

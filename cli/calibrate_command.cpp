@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/raw_calibration.hpp>
+#include <cairn/io/stereo_calibration.hpp>
 #include <charconv>
-#include <io/raw_calibration.hpp>
-#include <io/stereo_calibration.hpp>
 #include <iostream>
 
 #include "commands.hpp"

@@ -8,14 +8,14 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/target.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/io/disparity_files.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <io/calibration_files.hpp>
-#include <io/config_files.hpp>
-#include <io/disparity_files.hpp>
 #include <iostream>
 
 namespace cairn::cli {

@@ -5,13 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/stereo_pair.hpp>
-#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/output/results.hpp>
 #include <cairn/pipeline/config.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <filesystem>
 #include <functional>
-#include <io/dataset.hpp>
-#include <io/image_files.hpp>
-#include <io/results.hpp>
 #include <memory>
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <io/config_files.hpp>
+#include <cairn/io/config_files.hpp>
 #include <iostream>
 
 #include "commands.hpp"

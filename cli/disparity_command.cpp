@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/io/point_cloud.hpp>
+#include <cairn/output/overlay.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <filesystem>
-#include <io/disparity_files.hpp>
-#include <io/overlay.hpp>
-#include <io/point_cloud.hpp>
 #include <iostream>
 
 #include "commands.hpp"

@@ -4,10 +4,10 @@
 #include <cairn/core/error.hpp>
 #include <cairn/diagnosis/diagnose.hpp>
 #include <cairn/diagnosis/synchrony.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/output/diagnosis_json.hpp>
 #include <cmath>
-#include <io/atomic_file.hpp>
-#include <io/calibration_files.hpp>
-#include <io/diagnosis_json.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 

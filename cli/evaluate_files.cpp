@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
-#include <io/disparity_files.hpp>
-#include <io/read_file.hpp>
-#include <io/results.hpp>
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/io/read_file.hpp>
+#include <cairn/output/results.hpp>
 
 namespace cairn::cli {
 namespace {

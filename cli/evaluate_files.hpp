@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/output/web/html_page.hpp>
 #include <filesystem>
-#include <io/dataset.hpp>
-#include <io/image_files.hpp>
 #include <optional>
-#include <page/html_page.hpp>
 #include <string>
 
 /// The input files of `cairn evaluate`.

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/output/trajectory_files.hpp>
+#include <cairn/timing/statistics.hpp>
 #include <cmath>
 #include <filesystem>
-#include <io/atomic_file.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
-#include <source/trajectory_files.hpp>
-#include <timing/statistics.hpp>
 
 #include "common.hpp"
 #include "evaluation_text.hpp"

@@ -2,21 +2,21 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/input/camera/without_password.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/live/sequence_run.hpp>
+#include <cairn/output/follow_files.hpp>
+#include <cairn/output/follow_page.hpp>
+#include <cairn/sequence/follower.hpp>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <io/atomic_file.hpp>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <set>
-#include <source/camera/without_password.hpp>
-#include <source/follow_files.hpp>
-#include <source/follow_page.hpp>
-#include <source/sequence_run.hpp>
-#include <tracking/follower.hpp>
 
 #include "commands.hpp"
 #include "common.hpp"

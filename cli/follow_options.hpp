@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/sequence/follow_config.hpp>
 #include <optional>
-#include <tracking/follow_config.hpp>
 
 #include "common.hpp"
 

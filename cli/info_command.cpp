@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/target.hpp>
+#include <cairn/timing/opencv_matchers.hpp>
 #include <iostream>
-#include <timing/opencv_matchers.hpp>
 
 #include "commands.hpp"
 #include "common.hpp"

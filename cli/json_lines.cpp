@@ -6,10 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cairn/output/follow_files.hpp>
 #include <cerrno>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <source/follow_files.hpp>
 #include <string_view>
 
 #include "interrupt.hpp"

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/live/live_frame.hpp>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
-#include <live/live_frame.hpp>
 #include <mutex>
 #include <optional>
 #include <string>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <cairn/live/looped.hpp>
+#include <cairn/live/runner.hpp>
 #include <iostream>
-#include <live/looped.hpp>
-#include <live/runner.hpp>
 
 #include "commands.hpp"
 #include "common.hpp"

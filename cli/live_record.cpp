@@ -6,11 +6,11 @@
 #include <unistd.h>
 
 #include <cairn/core/error.hpp>
+#include <cairn/ros/mcap.hpp>
 #include <cerrno>
 #include <csignal>
 #include <fstream>
 #include <iostream>
-#include <ros/mcap.hpp>
 #include <string>
 #include <system_error>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <live/recorder.hpp>
+#include <cairn/live/recorder.hpp>
 #include <memory>
 #include <string>
 

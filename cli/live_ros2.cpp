@@ -3,7 +3,7 @@
 #include "live_ros2.hpp"
 
 #include <cairn/core/error.hpp>
-#include <live/ros2.hpp>
+#include <cairn/live/ros2.hpp>
 
 namespace cairn::cli {
 

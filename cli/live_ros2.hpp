@@ -3,7 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <live/live_frame.hpp>
+#include <cairn/live/live_frame.hpp>
 #include <memory>
 #include <string>
 

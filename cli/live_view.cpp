@@ -3,9 +3,9 @@
 #include "live_view.hpp"
 
 #include <cairn/core/error.hpp>
+#include <cairn/live/view/view_server.hpp>
+#include <cairn/ros/mcap.hpp>
 #include <iostream>
-#include <live/view/view_server.hpp>
-#include <ros/mcap.hpp>
 
 namespace cairn::cli {
 namespace {

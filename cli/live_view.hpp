@@ -3,10 +3,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <live/live_frame.hpp>
-#include <live/recorder.hpp>
-#include <live/runner.hpp>
-#include <live/view/view_options.hpp>
+#include <cairn/live/live_frame.hpp>
+#include <cairn/live/recorder.hpp>
+#include <cairn/live/runner.hpp>
+#include <cairn/live/view/view_options.hpp>
 #include <memory>
 #include <string>
 

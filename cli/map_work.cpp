@@ -3,12 +3,12 @@
 #include "map_work.hpp"
 
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/sequence/map_exports.hpp>
+#include <cairn/sequence/map_file.hpp>
 #include <cmath>
 #include <filesystem>
-#include <io/atomic_file.hpp>
 #include <iostream>
-#include <landmarks/map_exports.hpp>
-#include <landmarks/map_file.hpp>
 
 #include "common.hpp"
 

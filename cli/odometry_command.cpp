@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/input/camera/without_password.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/live/sequence_run.hpp>
+#include <cairn/output/trajectory_files.hpp>
 #include <cairn/pipeline/segment.hpp>
+#include <cairn/sequence/first_pose.hpp>
+#include <cairn/sequence/odometry.hpp>
 #include <chrono>
-#include <io/atomic_file.hpp>
 #include <iostream>
 #include <map>
-#include <source/camera/without_password.hpp>
-#include <source/sequence_run.hpp>
-#include <source/trajectory_files.hpp>
-#include <tracking/first_pose.hpp>
-#include <tracking/odometry.hpp>
 
 #include "commands.hpp"
 #include "common.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/frame_names.hpp>
+#include <cairn/io/image_files.hpp>
 #include <filesystem>
 #include <fstream>
-#include <io/atomic_file.hpp>
-#include <io/calibration_files.hpp>
-#include <io/frame_names.hpp>
-#include <io/image_files.hpp>
 #include <iostream>
 #include <system_error>
 

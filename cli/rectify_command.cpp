@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
-#include <io/atomic_file.hpp>
-#include <io/calibration_files.hpp>
-#include <io/raw_calibration.hpp>
-#include <io/stereo_calibration.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/raw_calibration.hpp>
+#include <cairn/io/stereo_calibration.hpp>
 #include <iostream>
 
 #include "commands.hpp"

@@ -3,8 +3,8 @@
 #include "refusals.hpp"
 
 #include <algorithm>
-#include <cairn/disparity/texture.hpp>
 #include <cairn/image/noise.hpp>
+#include <cairn/stereo/texture.hpp>
 #include <cmath>
 
 #include "common.hpp"

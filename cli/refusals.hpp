@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <string>
 #include <vector>
 

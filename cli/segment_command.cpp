@@ -4,14 +4,14 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/diagnosis/diagnose.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/output/web/html_page.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cmath>
 #include <filesystem>
-#include <io/atomic_file.hpp>
-#include <io/calibration_files.hpp>
 #include <iostream>
 #include <optional>
-#include <page/html_page.hpp>
 #include <set>
 #include <sstream>
 

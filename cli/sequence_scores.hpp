@@ -3,14 +3,14 @@
 #pragma once
 
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/input/true_frames.hpp>
+#include <cairn/output/track_files.hpp>
+#include <cairn/sequence/track_error.hpp>
+#include <cairn/sequence/trajectory_error.hpp>
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <source/track_files.hpp>
-#include <source/true_frames.hpp>
 #include <string>
-#include <tracking/track_error.hpp>
-#include <tracking/trajectory_error.hpp>
 #include <vector>
 
 /// The scores of `cairn evaluate --sequence`. (docs/evaluation.md, "Sequences")

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/input/frame_list.hpp>
 #include <cstdlib>
 #include <iostream>
-#include <source/frame_list.hpp>
 
 #include "common.hpp"
 #include "interrupt.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <source/sequence.hpp>
+#include <cairn/input/sequence.hpp>
 #include <string>
 
 namespace cairn::cli {

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/output/tuning_json.hpp>
 #include <cairn/tuning/tune.hpp>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <io/atomic_file.hpp>
-#include <io/config_files.hpp>
-#include <io/tuning_json.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <set>

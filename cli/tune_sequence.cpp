@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/sequence/follower.hpp>
 #include <cairn/tuning/search.hpp>
 #include <chrono>
-#include <io/atomic_file.hpp>
-#include <io/config_files.hpp>
 #include <iostream>
 #include <limits>
-#include <tracking/follower.hpp>
 
 #include "source_options.hpp"
 

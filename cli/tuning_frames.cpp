@@ -3,7 +3,7 @@
 #include "tuning_frames.hpp"
 
 #include <cairn/core/error.hpp>
-#include <io/disparity_files.hpp>
+#include <cairn/io/disparity_files.hpp>
 
 namespace cairn::cli {
 namespace {

@@ -14,50 +14,45 @@ function(cairn_install_library targets export component)
   install(EXPORT ${export} NAMESPACE cairn:: FILE ${export}.cmake DESTINATION ${package_dir} COMPONENT dev)
 endfunction()
 
-# cairn_install_headers(FOLDERS...): below <cairn/...>
-function(cairn_install_headers)
-  foreach(folder IN LISTS ARGN)
-    install(DIRECTORY ${folder}/ DESTINATION ${include_dir}/${folder} COMPONENT dev FILES_MATCHING
-      PATTERN "*.hpp"
-      PATTERN video EXCLUDE
-      PATTERN camera EXCLUDE
-      PATTERN dds EXCLUDE
-      REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
-  endforeach()
-endfunction()
-
 # ---- libraries and their headers ----
 
 # All other headers are private: they may change or disappear in any version.
 set(private_headers
-  core/disjoint_sets core/each_index core/highway_targets core/nearest core/observed core/pool_memory core/random
-  core/scratch grouping/segmentation_of grouping/surfaces_behind objects/object_match objects/ranks
-  diagnosis/robust_fit disparity/islands scene/floor_search scene/plane_fit scene/plane_through_pairs
-  pipeline/matched_scene pipeline/methods pipeline/option_walk
-  matching/byte_lanes_plain matching/lanes_plain matching/pixel_math image/prefilter matching/memory
-  image/gaussian image/local_contrast image/sparse_points image/texture
-  regions/growing_regions regions/label_kernels_plain regions/percent regions/runs
-  regions/gradient_threshold regions/split_floor
+  core/disjoint_sets core/each_index core/highway_targets stereo/label_kernels_plain core/nearest core/observed
+  core/pool_memory core/random core/scratch
+  image/gaussian image/local_contrast image/prefilter image/sparse_points image/texture
+  stereo/byte_lanes_plain stereo/islands stereo/lanes_plain stereo/memory stereo/pixel_math
+  scene/floor_search scene/plane_fit scene/plane_through_pairs
+  regions/gradient_threshold regions/growing_regions regions/percent regions/runs regions/segmentation_of
+  regions/split_floor regions/surfaces_behind
+  objects/object_match objects/ranks pipeline/matched_scene pipeline/methods pipeline/option_walk diagnosis/robust_fit
+  sequence/assign sequence/changes sequence/kalman sequence/landmark_geometry sequence/motion_fit sequence/twist
+  io/calibration_forms io/frame_names io/raster io/read_file io/sha256 io/yaml_text
+  input/frame_list input/frame_watch input/load_module input/mcap_sequence input/mcap_topics io/names_and_numbers
+  input/open_ros2 input/open_video input/ros_pictures sequence/stamp_pairing io/text_lines
+  output/json_line web/html_template web/live_page web/page_parts ros/mcap_format
+  view/access view/channels view/client view/frame_json view/parameters
   [a-z]+/[a-z_]+_kernels
-  ros/mcap_format source/mcap_sequence source/mcap_topics source/ros_pictures source/stamp_pairing
-  tracking/assign tracking/kalman tracking/motion_fit tracking/twist landmarks/changes landmarks/geometry
-  source/frame_list source/frame_watch source/json_line source/load_module source/names_and_numbers source/open_video
-  source/open_ros2 source/text_lines
-  io/calibration_forms io/frame_names io/raster io/read_file io/sha256 io/yaml_text page/html_template page/page_parts
-  page/live_page view/access view/channels view/client view/frame_json view/parameters)
+  "(video|camera|dds|batch|timing)/[a-z0-9_]+")
 list(JOIN private_headers "|" private_headers)
 
+set(not_built)
+if(NOT CAIRN_IO)
+  list(APPEND not_built REGEX "/cairn/(io|output)/|/cairn/opencv\\.hpp$" EXCLUDE)
+endif()
+if(NOT CAIRN_HAS_TRACKING)
+  list(APPEND not_built REGEX "/cairn/(sequence|input|ros|live)/|/output/(follow|track|trajectory)_[a-z]+\\.hpp$" EXCLUDE)
+endif()
 cairn_install_library(cairn cairnTargets library)
 install(DIRECTORY cairn/ DESTINATION ${include_dir} COMPONENT dev FILES_MATCHING
   PATTERN "*.hpp"
   PATTERN "*-inl.hpp" EXCLUDE
-  REGEX "/(${private_headers})\\.hpp$" EXCLUDE)
+  REGEX "/(${private_headers})\\.hpp$" EXCLUDE
+  ${not_built})
 if(CAIRN_IO)
   cairn_install_library(cairn_io cairnIoTargets library)
-  cairn_install_headers(io page)
   if(CAIRN_HAS_TRACKING)
-    cairn_install_library("cairn_tracking;cairn_landmarks;cairn_ros;cairn_source;cairn_live;cairn_sequences" cairnSequencesTargets sequences)
-    cairn_install_headers(tracking landmarks ros source live)
+    cairn_install_library(cairn_sequences cairnSequencesTargets sequences)
   endif()
   install(FILES docs/schema/objects.schema.json docs/schema/batch_row.schema.json packaging/slurm/cairn.sbatch DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
   # The commands' help refers to these pages.
@@ -136,7 +131,7 @@ if(CAIRN_IO)
       set(mcap_requires " libzstd")
     endif()
     cairn_install_pkgconfig(cairn-sequences "Sequences with cairn: odometry, tracks, landmarks, sources of frames"
-      "-lcairn-live -lcairn-source -lcairn-ros -lcairn-landmarks -lcairn-tracking" "cairn-io = ${PROJECT_VERSION}" "sqlite3${mcap_requires}"
+      "-lcairn-sequences" "cairn-io = ${PROJECT_VERSION}" "sqlite3${mcap_requires}"
       "-lSQLiteCpp -lopencv_video -lopencv_calib3d -ldl")
   endif()
 endif()
@@ -159,11 +154,11 @@ if(CAIRN_IO)
     install(DIRECTORY ${manual}/man1 ${manual}/man7 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT tools)
   endif()
   install(DIRECTORY ${manual}/bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT tools)
-  install(DIRECTORY samples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tools)
+  install(DIRECTORY data/samples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tools)
   # The pages link to the licence there.
   install(DIRECTORY examples/batch DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tools USE_SOURCE_PERMISSIONS)
   if(CAIRN_HAS_TRACKING)
-    install(DIRECTORY sequences DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
+    install(DIRECTORY data/sequences DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
   endif()
 endif()
 if(NOT CAIRN_DEBIAN)  # Debian: each package's copyright file has it

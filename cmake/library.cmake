@@ -23,13 +23,3 @@ function(cairn_library target)
     set_target_properties(${target} PROPERTIES LINK_DEPENDS ${CAIRN_EXPORTS})
   endif()
 endfunction()
-
-# cairn_headers_as_installed(TARGET FOLDERS...): makes <cairn/FOLDER/...> work in the build, too. Symbolic links, so
-# edits take effect.
-function(cairn_headers_as_installed target)
-  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/cairn)
-  foreach(folder IN LISTS ARGN)
-    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${PROJECT_BINARY_DIR}/include/cairn/${folder} SYMBOLIC)
-  endforeach()
-  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>)
-endfunction()

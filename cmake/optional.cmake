@@ -1,15 +1,18 @@
-# cairn_wants(OPTION PACKAGES RESULT): sets RESULT to whether the part controlled by OPTION (AUTO, ON or OFF) is
-# built. AUTO: if all PACKAGES are found; ON requires them. A macro, so that the caller sees the variables of
-# find_package.
-macro(cairn_wants option packages result)
-  set(${result} OFF)
-  if(${option})  # ON or AUTO
-    set(${result} ON)
+# The optional parts: the option CAIRN_<PART> (AUTO, ON or OFF) controls each, and CAIRN_HAS_<PART> says whether it is
+# built. AUTO: where its packages are found; ON requires them.
+
+# A macro, so that the caller sees the variables of find_package.
+macro(cairn_part part purpose packages)
+  set(CAIRN_${part} AUTO CACHE STRING "${purpose} (AUTO: where its packages are installed)")
+  set_property(CACHE CAIRN_${part} PROPERTY STRINGS AUTO ON OFF)
+  set(CAIRN_HAS_${part} OFF)
+  if(CAIRN_IO AND CAIRN_${part})
+    set(CAIRN_HAS_${part} ON)
     foreach(cairn_package ${packages})
-      if(${option} STREQUAL "AUTO")
+      if(CAIRN_${part} STREQUAL "AUTO")
         find_package(${cairn_package} QUIET)
         if(NOT ${cairn_package}_FOUND)
-          set(${result} OFF)
+          set(CAIRN_HAS_${part} OFF)
         endif()
       else()
         find_package(${cairn_package} REQUIRED)
@@ -17,3 +20,20 @@ macro(cairn_wants option packages result)
     endforeach()
   endif()
 endmacro()
+
+cairn_part(OPENCV_PEERS "OpenCV's matchers beside ours in `cairn bench` and in the benchmarks" OpenCVCalib3d)
+cairn_part(CALIBRATION "`cairn calibrate` and `cairn rectify` through OpenCV" OpenCVCalib3d)
+cairn_part(ZSTD "recordings (MCAP) and packed results of `cairn batch merge`" "Zstd;ZLIB")
+cairn_part(TRACKING "sequences: odometry, tracks, landmarks" "OpenCVVideo;OpenCVCalib3d;Eigen3;Dlib;SQLiteCpp")
+cairn_part(VIDEO "videos as sequences through OpenCV" OpenCVVideoio)
+cairn_part(GSTREAMER "cameras by pipelines of GStreamer" GStreamerApp)
+cairn_part(VIEW "live views in a browser and for Foxglove" "Boost;OpenSSL")
+cairn_part(DDS "topics of ROS 2 through Cyclone DDS" CycloneDDS)
+foreach(part VIDEO GSTREAMER VIEW DDS)
+  if(NOT CAIRN_HAS_TRACKING)
+    set(CAIRN_HAS_${part} OFF)
+  endif()
+endforeach()
+if(CAIRN_SANITIZE MATCHES "thread")  # which would need an instrumented Cyclone DDS
+  set(CAIRN_HAS_DDS OFF)
+endif()

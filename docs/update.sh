@@ -130,8 +130,8 @@ screenshot() {  # PAGE FILE
 
 if [[ $pictures == yes ]]; then
   mkdir -p docs/images
-  "$build_dir/cairn" segment samples --html -o "$scratch/results" >/dev/null
-  "$build_dir/cairn" evaluate "$scratch/results" samples --html "$scratch" >/dev/null
+  "$build_dir/cairn" segment data/samples --html -o "$scratch/results" >/dev/null
+  "$build_dir/cairn" evaluate "$scratch/results" data/samples --html "$scratch" >/dev/null
   for kind in overlay disparity_view; do picture "$scratch/results/four_in_a_row/$kind.png" $kind; done
   if command -v chromium >/dev/null; then
     screenshot "$scratch/results/segment.html#2" "$scratch/segment.png"

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // The minimum: a rectified pair in, objects out.
-//   01_objects_from_a_pair samples/four_in_a_row
+//   01_objects_from_a_pair data/samples/four_in_a_row
 #include <cairn/cairn.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/image_files.hpp>

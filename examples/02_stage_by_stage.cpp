@@ -3,7 +3,7 @@
 //
 // What cairn::segment() does with the presets `paper` and `default`, one stage at a time, printing the result
 // of each.
-//   02_stage_by_stage samples/glossy_floor
+//   02_stage_by_stage data/samples/glossy_floor
 #include <cairn/cairn.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/image_files.hpp>

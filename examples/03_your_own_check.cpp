@@ -3,7 +3,7 @@
 //
 // Adds a check of your own to the library's: over-exposed pixels carry no information, so their matches are
 // rejected.
-//   03_your_own_check samples/dim_light
+//   03_your_own_check data/samples/dim_light
 #include <cairn/cairn.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/image_files.hpp>

@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 """The first example in Python: a rectified pair in, objects out.
 
-PYTHONPATH=build/release/python examples/04_in_python.py samples/four_in_a_row
+PYTHONPATH=build/release/python examples/04_in_python.py data/samples/four_in_a_row
 """
 
 import pathlib

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/cairn.hpp>
-#include <cairn/source/sequence.hpp>
-#include <cairn/tracking/follower.hpp>
+#include <cairn/input/sequence.hpp>
+#include <cairn/sequence/follower.hpp>
 #include <cstdio>
 
 /// From a sequence to the camera's path and to objects with persistent ids: 05_follow_a_sequence FOLDER,
-/// where FOLDER is any source of `cairn follow`, such as sequences/rolling_ball.
+/// where FOLDER is any source of `cairn follow`, such as data/sequences/rolling_ball.
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: 05_follow_a_sequence FOLDER\n"), 2;
 

@@ -21,7 +21,7 @@ import tempfile
 import numpy as np
 
 FRAMES = 5  # of each program in a round
-SAMPLE = pathlib.Path(__file__).resolve().parent.parent / "samples" / "four_in_a_row"
+SAMPLE = pathlib.Path(__file__).resolve().parent.parent / "data" / "samples" / "four_in_a_row"
 
 
 def refuse(why):

@@ -13,14 +13,14 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/io/image_files.hpp>
 #include <cstdio>
 #include <ctime>
-#include <io/image_files.hpp>
 #include <map>
 #include <set>
 #include <utility>
 
-#include <timing/clock.hpp>
+#include <cairn/timing/clock.hpp>
 #include "arguments.hpp"
 #include "markdown_table.hpp"
 

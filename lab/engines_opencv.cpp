@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include <timing/opencv_matrix.hpp>
+#include <cairn/timing/opencv_matrix.hpp>
 #include "engines.hpp"
 
 namespace cairn::engines {

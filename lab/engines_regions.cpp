@@ -13,7 +13,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include <timing/clock.hpp>
+#include <cairn/timing/clock.hpp>
 #include "engines.hpp"
 #include "markdown_table.hpp"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the trees that score regions (cairn/grouping/fitted_*.inc), and those that correct the disparity of an object
+"""Fits the trees that score regions (cairn/regions/fitted_*.inc), and those that correct the disparity of an object
 (cairn/objects/fitted_*.inc), to the fit set.
 
 fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--hints FOLDER] [--out FOLDER] [--page FILE]
@@ -154,7 +154,7 @@ class Nodes:
 
     def write_source(self, path, name):
         with open(path, "w") as out:
-            out.write("// Written by fitting/fit.py (./dev fit); do not edit.\n// clang-format off\n")
+            out.write("// Written by lab/fit.py (./dev fit); do not edit.\n// clang-format off\n")
             out.write(f"constexpr float k{name}Base = {source_number(self.base)};\n")
             out.write(f"constexpr std::array<std::int16_t, {len(self.roots)}> k{name}Roots{{\n")
             out.write(source_rows(f"{root}," for root in self.roots) + "};\n")
@@ -372,7 +372,7 @@ def gains_table(fitting, kind, header):
 def frames_used(sets):
     counts = ", ".join(f"{name} {len(frames)}" for name, frames in sets.items())
     more = ""
-    for name, script in (("more rooms", "rooms.py"), ("clutter", "fitting/cluttered_rooms.py GENERATOR")):
+    for name, script in (("more rooms", "rooms.py"), ("clutter", "lab/cluttered_rooms.py GENERATOR")):
         rooms = sorted(int(frame.name.rsplit("s", 1)[1]) for frame in sets.get(name, []))
         if rooms:
             more += f"*{name}*: the generator's numbers {runs_of(rooms)} (`{script} jobs.json FIRST LAST+1`).\n"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the network of cairn/grouping/object_hints.hpp to the fit set.
+"""Fits the network of cairn/regions/object_hints.hpp to the fit set.
 
 fit_hints.py TOOL DATA [--rooms FOLDER] [--work FOLDER] [--out FOLDER] [--steps N]
 
@@ -282,7 +282,7 @@ def write_source(layers, path):
         return f"constexpr std::array<{kind}, {len(values)}> kFitted{name}{{\n{source_rows(f'{v},' for v in values)}}};\n"
 
     with open(path, "w") as out:
-        out.write("// Written by fitting/fit_hints.py (./dev fit); do not edit.\n// clang-format off\n")
+        out.write("// Written by lab/fit_hints.py (./dev fit); do not edit.\n// clang-format off\n")
         shapes = "\n".join("    {" + ", ".join(map(str, shape)) + "}," for shape, _, _, _ in layers)
         out.write(f"constexpr std::array<HintLayer, {len(layers)}> kFittedLayers{{{{\n{shapes}}}}};\n")
         out.write(array("std::int8_t", "Weights", (v for layer in layers for v in layer[1])))

@@ -13,8 +13,9 @@
 // that was found, the job's number, the true disparity minus the measured one, the latter's px per metre of
 // depth, and the features of its bias; for the inputs, see record_input().
 #include <cairn/cairn.hpp>
-#include <cairn/grouping/choose_objects.hpp>
 #include <cairn/pipeline/methods.hpp>
+#include <cairn/regions/choose_objects.hpp>
+#include <cairn/timing/clock.hpp>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -22,7 +23,6 @@
 #include <memory>
 #include <span>
 #include <sstream>
-#include <timing/clock.hpp>
 
 #include "scored_frames.hpp"
 

@@ -4,14 +4,14 @@
 #
 # instruction_counts.sh --check|--update BUILD_DIR: how many instructions the method executes on a fixed pair, by preset and
 # function, counted by valgrind's callgrind; unlike times they are the same on a machine that is busy. --check compares
-# with benchmarks/instruction_counts.txt and fails where one is off by more than 3 %; faster is off, too: a guard that is
+# with lab/instruction_counts.txt and fails where one is off by more than 3 %; faster is off, too: a guard that is
 # never renewed guards nothing. --update writes the file anew, to be reviewed in git diff.
 # One thread and AVX2 kernels, because valgrind knows no AVX-512. Counts of another compiler or of other flags are others:
 # then, and where there is no valgrind, --check ends with exit code 77, which ctest takes for skipped.
 set -euo pipefail
 mode=${1:?} build_dir=$(realpath "${2:?}")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-readonly kept=benchmarks/instruction_counts.txt
+readonly kept=lab/instruction_counts.txt
 readonly most_percent=3   # that a count may be off
 readonly least_percent=1  # of the whole that a function must have for a row of its own
 
@@ -42,7 +42,7 @@ build_key() {
 counts() {
   local preset=$1
   valgrind --tool=callgrind --callgrind-out-file="$scratch/$preset" \
-    "$build_dir/cairn" segment samples/four_in_a_row --threads 1 --target avx2 --preset "$preset" --json \
+    "$build_dir/cairn" segment data/samples/four_in_a_row --threads 1 --target avx2 --preset "$preset" --json \
     >"$scratch/out" 2>&1 || { cat "$scratch/out" >&2; return 1; }
   # A function of more than one source file has a line for each, and an overload one of its own: the largest counts.
   callgrind_annotate --inclusive=yes --threshold=100 "$scratch/$preset" |
@@ -68,7 +68,7 @@ for preset in default paper; do counts "$preset"; done >"$scratch/now"
 
 if [[ $mode == --update ]]; then
   {
-    echo "# Instructions that one frame of samples/four_in_a_row takes: one thread, AVX2 kernels; what a function calls is"
+    echo "# Instructions that one frame of data/samples/four_in_a_row takes: one thread, AVX2 kernels; what a function calls is"
     echo "# counted with it. Written by ./dev test --update; checked to $most_percent % by the test contracts/instruction_counts."
     echo "# built with: $key"
     awk -v least="$least_percent" '

@@ -6,10 +6,10 @@
 #include <benchmark/benchmark.h>
 
 #include <cairn/core/target.hpp>
-#include <cairn/disparity/left_right.hpp>
 #include <cairn/image/prefilter.hpp>
-#include <cairn/matching/semi_global.hpp>
-#include <cairn/matching/subpixel.hpp>
+#include <cairn/stereo/left_right.hpp>
+#include <cairn/stereo/semi_global.hpp>
+#include <cairn/stereo/subpixel.hpp>
 #include <random>
 #include <string>
 

@@ -7,7 +7,7 @@
 //   pcl_chain --search DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...
 // DATA is the folder with rendered/ and real/. The first form prints the tables of docs/comparison.md. The
 // second chooses the chain's parameters on the fit set, by the search that chose those of the preset `paper`
-// (fitting/search_program.hpp). Times are processor times of one thread.
+// (lab/search_program.hpp). Times are processor times of one thread.
 #include <pcl/ModelCoefficients.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
@@ -33,10 +33,10 @@
 #include <utility>
 #include <vector>
 
-#include <fitting/search_program.hpp>
-#include <timing/clock.hpp>
-#include <timing/opencv_matchers.hpp>
-#include <timing/opencv_matrix.hpp>
+#include <cairn/timing/clock.hpp>
+#include <cairn/timing/opencv_matchers.hpp>
+#include <cairn/timing/opencv_matrix.hpp>
+#include <search_program.hpp>
 #include "arguments.hpp"
 #include "markdown_table.hpp"
 

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "scored_frames.hpp"
 
-#include <io/calibration_files.hpp>
-#include <io/disparity_files.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/disparity_files.hpp>
 
-#include <timing/clock.hpp>
+#include <cairn/timing/clock.hpp>
 
 namespace cairn::report {
 namespace {

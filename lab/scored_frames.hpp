@@ -6,14 +6,14 @@
 #include <cairn/core/each_index.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/image_files.hpp>
 #include <filesystem>
-#include <io/dataset.hpp>
-#include <io/image_files.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <timing/statistics.hpp>
+#include <cairn/timing/statistics.hpp>
 
 /// Frames with ground truth in memory, and the scores of a configuration on them.
 namespace cairn::report {

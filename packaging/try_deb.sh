@@ -56,7 +56,7 @@ say "the command"
 mapfile -t tools < <(packages_named 'libcairn[0-9]*'; packages_named 'libcairn-sequences*'; packages_named cairn)
 install_inside "${tools[@]}"
 echo "$(inside cairn --version); $(($(count_packages) - before)) packages installed, including its own"
-for sample in "$source_dir"/samples/*/; do
+for sample in "$source_dir"/data/samples/*/; do
   name=$(basename "$sample")
   inside cairn segment "/usr/share/doc/cairn/examples/$name" -o "/tmp/demo/$name"
   for file in objects.json objects.png overlay.png disparity.png; do
@@ -73,7 +73,7 @@ fi
 inside cairn batch plan /usr/share/doc/cairn/examples -o /tmp/archive
 inside cairn batch work /tmp/archive
 inside cairn batch merge /tmp/archive -o /tmp/archive.jsonl
-[[ $(wc -l <"$root/tmp/archive.jsonl") == "$(ls -d "$source_dir"/samples/*/ | wc -l)" ]] || fail "cairn batch left other rows"
+[[ $(wc -l <"$root/tmp/archive.jsonl") == "$(ls -d "$source_dir"/data/samples/*/ | wc -l)" ]] || fail "cairn batch left other rows"
 [[ -x $root/usr/share/doc/cairn/examples/batch/parallel.sh ]] || fail "no examples of batch runs"
 inside cairn evaluate /tmp/demo/four_in_a_row /usr/share/doc/cairn/examples/four_in_a_row
 [[ -s $root/usr/share/man/man1/cairn-segment.1.gz ]] || fail "no manual page"

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
-#include <batch/run.hpp>
+#include <cairn/batch/run.hpp>
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/read_file.hpp>
+#include <cairn/io/sha256.hpp>
 #include <fstream>
-#include <io/atomic_file.hpp>
-#include <io/read_file.hpp>
-#include <io/sha256.hpp>
 #include <system_error>
 #include <unordered_set>
 

@@ -6,15 +6,15 @@
 #include <unistd.h>
 
 #include <array>
-#include <batch/shard.hpp>
+#include <cairn/batch/shard.hpp>
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/sha256.hpp>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <io/atomic_file.hpp>
-#include <io/sha256.hpp>
 #include <system_error>
 
 namespace cairn::batch {

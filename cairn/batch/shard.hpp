@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <batch/run.hpp>
+#include <cairn/batch/run.hpp>
 #include <cstddef>
 #include <functional>
 #include <optional>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <batch/summary.hpp>
+#include <cairn/batch/summary.hpp>
 #include <cairn/core/error.hpp>
+#include <cairn/io/sha256.hpp>
 #include <fstream>
-#include <io/sha256.hpp>
 #include <map>
 #include <system_error>
 #include <utility>

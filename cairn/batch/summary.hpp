@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <batch/shard.hpp>
+#include <cairn/batch/shard.hpp>
 #include <functional>
 #include <optional>
 #include <string>

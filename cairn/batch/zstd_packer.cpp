@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <zstd.h>
 
-#include <batch/zstd_packer.hpp>
+#include <cairn/batch/zstd_packer.hpp>
 #include <new>
 
 namespace cairn::batch {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <batch/zstd_packer.hpp>
+#include <cairn/batch/zstd_packer.hpp>
 #include <cairn/core/error.hpp>
 
 namespace cairn::batch {

@@ -13,7 +13,7 @@
 
 namespace cairn {
 
-enum class Reject : std::uint16_t;  // defined in disparity/reject.hpp; the rest next to its stage
+enum class Reject : std::uint16_t;  // defined in stereo/reject.hpp; the rest next to its stage
 struct Matches;
 struct DisparityMap;
 struct Ground;

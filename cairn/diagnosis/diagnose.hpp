@@ -7,8 +7,8 @@
 #include <cairn/diagnosis/findings.hpp>
 #include <cairn/diagnosis/row_alignment.hpp>
 #include <cairn/diagnosis/sharpness.hpp>
-#include <cairn/matching/match.hpp>
 #include <cairn/pipeline/segment.hpp>
+#include <cairn/stereo/match.hpp>
 #include <optional>
 #include <string_view>
 #include <vector>

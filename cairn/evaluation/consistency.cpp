@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/evaluation/consistency.hpp>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
 #include <cassert>
 #include <cmath>
 #include <cstdlib>

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "frame_list.hpp"
+#include <cairn/input/frame_list.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/frame_names.hpp>
 #include <charconv>
 #include <cmath>
-#include <io/dataset.hpp>
-#include <io/frame_names.hpp>
 #include <map>
 #include <system_error>
 
-#include "names_and_numbers.hpp"
-#include "stamps.hpp"
+#include <cairn/io/names_and_numbers.hpp>
+#include <cairn/sequence/stamps.hpp>
 
 namespace cairn::io {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "../io/dataset.hpp"
-#include "sequence.hpp"
+#include <cairn/input/sequence.hpp>
+#include <cairn/io/dataset.hpp>
 
 /// Lists the files of a source before any image is decoded; internal to source.
 namespace cairn::io {

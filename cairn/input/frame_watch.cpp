@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "frame_watch.hpp"
+#include <cairn/input/frame_watch.hpp>
 
 #include <cairn/core/error.hpp>
-#include <io/raw_calibration.hpp>
+#include <cairn/io/raw_calibration.hpp>
 #include <string_view>
 
-#include "frame_list.hpp"
-#include "stamps.hpp"
+#include <cairn/input/frame_list.hpp>
+#include <cairn/sequence/stamps.hpp>
 
 namespace cairn::io {
 namespace {

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "../io/calibration_files.hpp"
-#include "../io/stereo_calibration.hpp"
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/stereo_calibration.hpp>
 
-#include "sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 /// Frame handling common to all sources; internal to source.
 namespace cairn::io {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "laser_scans.hpp"
+#include <cairn/input/laser_scans.hpp>
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/read_file.hpp>
 #include <cmath>
-#include <io/read_file.hpp>
 #include <limits>
 #include <numbers>
 #include <string>
 
-#include "stamps.hpp"
-#include "text_lines.hpp"
+#include <cairn/io/text_lines.hpp>
+#include <cairn/sequence/stamps.hpp>
 
 namespace cairn::io {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "../tracking/reliability.hpp"
+#include <cairn/sequence/reliability.hpp>
 
 namespace cairn::io {
 

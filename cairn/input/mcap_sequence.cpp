@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "mcap_sequence.hpp"
+#include <cairn/input/mcap_sequence.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/frame_names.hpp>
+#include <cairn/io/raster.hpp>
 #include <deque>
-#include <io/frame_names.hpp>
-#include <io/raster.hpp>
 
-#include "../ros/from_step.hpp"
-#include "../ros/mcap.hpp"
-#include "frame_list.hpp"
-#include "frame_watch.hpp"
-#include "mcap_topics.hpp"
-#include "names_and_numbers.hpp"
-#include "ros_pictures.hpp"
-#include "stamp_pairing.hpp"
+#include <cairn/input/frame_list.hpp>
+#include <cairn/input/frame_watch.hpp>
+#include <cairn/input/mcap_topics.hpp>
+#include <cairn/input/ros_pictures.hpp>
+#include <cairn/io/names_and_numbers.hpp>
+#include <cairn/ros/from_step.hpp>
+#include <cairn/ros/mcap.hpp>
+#include <cairn/sequence/stamp_pairing.hpp>
 
 namespace cairn::io {
 namespace {

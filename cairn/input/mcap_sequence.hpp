@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 /// Recordings (MCAP) as sequences; internal to source.
 namespace cairn::io {

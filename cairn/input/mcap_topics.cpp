@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "mcap_topics.hpp"
+#include <cairn/input/mcap_topics.hpp>
 
 #include <algorithm>
 #include <array>

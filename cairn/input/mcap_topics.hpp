@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "../ros/mcap.hpp"
+#include <cairn/ros/mcap.hpp>
 
 /// The stereo topics of a recording; internal to source.
 namespace cairn::io {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 /// Cameras on ROS 2 topics, through a module with Cyclone DDS (dds/); a build without it (CAIRN_DDS=OFF)
 /// throws Error. Internal to source.

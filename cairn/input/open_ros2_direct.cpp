@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "dds/ros2_sequence.hpp"
-#include "open_ros2.hpp"
+#include <cairn/input/dds/ros2_sequence.hpp>
+#include <cairn/input/open_ros2.hpp>
 
 /// Linked directly, without a module: sanitizers need one program.
 namespace cairn::io {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "dds/module.hpp"
-#include "open_ros2.hpp"
+#include <cairn/input/dds/module.hpp>
+#include <cairn/input/open_ros2.hpp>
 
 /// Loads DDS only if a topic is opened.
 namespace cairn::io {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 
-#include "open_ros2.hpp"
+#include <cairn/input/open_ros2.hpp>
 
 namespace cairn::io {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 /// Videos, through a module with OpenCV's videoio (video/); in a build without it (CAIRN_VIDEO=OFF) both
 /// functions throw Error. Internal to source.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "open_video.hpp"
-#include "video/opencv_video.hpp"
+#include <cairn/input/open_video.hpp>
+#include <cairn/input/video/opencv_video.hpp>
 
 /// Linked directly, without a module: sanitizers need one program.
 namespace cairn::io {

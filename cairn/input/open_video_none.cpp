@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 
-#include "open_video.hpp"
+#include <cairn/input/open_video.hpp>
 
 namespace cairn::io {
 namespace {

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "priors.hpp"
+#include <cairn/input/priors.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/read_file.hpp>
 #include <cmath>
 #include <cstdio>
-#include <io/read_file.hpp>
 #include <numbers>
 #include <system_error>
 #include <vector>
 
-#include "stamps.hpp"
-#include "text_lines.hpp"
-#include "trajectory_files.hpp"
+#include <cairn/io/text_lines.hpp>
+#include <cairn/output/trajectory_files.hpp>
+#include <cairn/sequence/stamps.hpp>
 
 namespace cairn::io {
 namespace {

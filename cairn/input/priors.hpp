@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
-#include "../tracking/odometry.hpp"
-#include "../tracking/pose.hpp"
+#include <cairn/sequence/odometry.hpp>
+#include <cairn/sequence/pose.hpp>
 
-#include "sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 /// Camera motion from other sensors, read from files. (docs/sequences.md, "Priors")
 namespace cairn::io {

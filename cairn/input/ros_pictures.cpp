@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "ros_pictures.hpp"
+#include <cairn/input/ros_pictures.hpp>
 
 #include <algorithm>
 #include <array>

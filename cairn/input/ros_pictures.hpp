@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "../io/raster.hpp"
-#include "../ros/messages.hpp"
+#include <cairn/io/raster.hpp>
+#include <cairn/ros/messages.hpp>
 
 namespace cairn::io {
 

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/read_file.hpp>
 #include <filesystem>
-#include <io/read_file.hpp>
 #include <system_error>
 
-#include "../ros/mcap.hpp"
-#include "camera/open_camera.hpp"
-#include "frame_list.hpp"
-#include "frame_watch.hpp"
-#include "mcap_sequence.hpp"
-#include "names_and_numbers.hpp"
-#include "open_ros2.hpp"
-#include "open_video.hpp"
+#include <cairn/input/camera/open_camera.hpp>
+#include <cairn/input/frame_list.hpp>
+#include <cairn/input/frame_watch.hpp>
+#include <cairn/input/mcap_sequence.hpp>
+#include <cairn/input/open_ros2.hpp>
+#include <cairn/input/open_video.hpp>
+#include <cairn/io/names_and_numbers.hpp>
+#include <cairn/ros/mcap.hpp>
 
 namespace cairn::io {
 namespace {

@@ -14,9 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include "../io/image_files.hpp"
-#include "../io/stereo_calibration.hpp"
-#include "../tracking/pose.hpp"
+#include <cairn/io/image_files.hpp>
+#include <cairn/io/stereo_calibration.hpp>
+#include <cairn/sequence/pose.hpp>
 
 /// Sequences of stereo pairs, decoded one pair at a time. (docs/sequences.md, "Sources")
 namespace cairn::io {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "true_frames.hpp"
+#include <cairn/input/true_frames.hpp>
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
-#include <io/dataset.hpp>
-#include <io/frame_names.hpp>
-#include <io/image_files.hpp>
-#include <io/read_file.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/frame_names.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/io/read_file.hpp>
 
-#include "json_line.hpp"
-#include "trajectory_files.hpp"
+#include <cairn/output/json_line.hpp>
+#include <cairn/output/trajectory_files.hpp>
 
 namespace cairn::io {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "../tracking/pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
-#include "track_files.hpp"
+#include <cairn/output/track_files.hpp>
 
 /// The ground truth of a sequence. (docs/formats.md, "The truth of a sequence")
 namespace cairn::io {

@@ -5,8 +5,8 @@
 
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
 #include <cerrno>
-#include <io/atomic_file.hpp>
 #include <string>
 #include <system_error>
 

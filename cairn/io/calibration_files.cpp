@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/calibration_forms.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/raster.hpp>
+#include <cairn/io/read_file.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <functional>
-#include <io/atomic_file.hpp>
-#include <io/calibration_files.hpp>
-#include <io/calibration_forms.hpp>
-#include <io/dataset.hpp>
-#include <io/raster.hpp>
-#include <io/read_file.hpp>
 #include <map>
 
 namespace cairn::io {

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/raw_calibration.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-#include "calibration_files.hpp"
-#include "raw_calibration.hpp"
 
 /// The forms of calibration files, one function each; internal to io. All throw Error without a file name.
 namespace cairn::io {

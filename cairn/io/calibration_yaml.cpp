@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
-#include <io/calibration_forms.hpp>
-#include <io/read_file.hpp>
+#include <cairn/io/calibration_forms.hpp>
+#include <cairn/io/read_file.hpp>
 #include <utility>
 
-#include "yaml_text.hpp"
+#include <cairn/io/yaml_text.hpp>
 
 namespace cairn::io {
 namespace {

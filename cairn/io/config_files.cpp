@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/io/read_file.hpp>
 #include <functional>
-#include <io/config_files.hpp>
-#include <io/read_file.hpp>
 #include <string_view>
 
-#include "yaml_text.hpp"
+#include <cairn/io/yaml_text.hpp>
 
 namespace cairn::io {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/calibration_forms.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/frame_names.hpp>
 #include <functional>
-#include <io/calibration_forms.hpp>
-#include <io/dataset.hpp>
-#include <io/frame_names.hpp>
 #include <system_error>
 
 namespace cairn::io {

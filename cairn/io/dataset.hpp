@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/io/image_files.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
-#include "image_files.hpp"
 
 namespace cairn::io {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/io/frame_names.hpp>
 #include <cstddef>
-#include <io/frame_names.hpp>
 #include <string_view>
 
 namespace cairn::io {

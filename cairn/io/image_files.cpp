@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cairn/core/error.hpp>
-#include <io/atomic_file.hpp>
-#include <io/image_files.hpp>
-#include <io/raster.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/io/raster.hpp>
 #include <string>
 
 namespace cairn::io {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cairn/core/image.hpp>
-#include <cairn/disparity/reject.hpp>
 #include <cairn/objects/space.hpp>
+#include <cairn/stereo/reject.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <string>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <bit>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/point_cloud.hpp>
 #include <cmath>
 #include <cstdint>
-#include <io/atomic_file.hpp>
-#include <io/point_cloud.hpp>
 #include <map>
 #include <string>
 

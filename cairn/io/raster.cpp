@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <cairn/io/raster.hpp>
+#include <cairn/io/read_file.hpp>
 #include <cerrno>
-#include <io/raster.hpp>
-#include <io/read_file.hpp>
 #include <new>
 #include <string>
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image_files.hpp"
+#include <cairn/io/image_files.hpp>
 
 /// Decoded images as stored in the file; internal to io. image_files and disparity_files convert them.
 namespace cairn::io {

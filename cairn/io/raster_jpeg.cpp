@@ -9,10 +9,10 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/raster.hpp>
 #include <cerrno>
 #include <csetjmp>
 #include <exception>
-#include <io/raster.hpp>
 #include <string>
 #include <utility>
 

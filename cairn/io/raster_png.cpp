@@ -5,11 +5,11 @@
 
 #include <bit>
 #include <cairn/core/error.hpp>
+#include <cairn/io/raster.hpp>
 #include <cerrno>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
-#include <io/raster.hpp>
 #include <new>
 #include <string>
 

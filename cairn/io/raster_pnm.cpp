@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/raster.hpp>
 #include <charconv>
-#include <io/raster.hpp>
 #include <string>
 
 namespace cairn::io {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
-#include <io/atomic_file.hpp>
-#include <io/calibration_forms.hpp>
-#include <io/raw_calibration.hpp>
-#include <io/read_file.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/calibration_forms.hpp>
+#include <cairn/io/raw_calibration.hpp>
+#include <cairn/io/read_file.hpp>
 #include <span>
 
 namespace cairn::io {

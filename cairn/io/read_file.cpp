@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/read_file.hpp>
 #include <cerrno>
-#include <io/read_file.hpp>
 #include <system_error>
 
 namespace cairn::io {

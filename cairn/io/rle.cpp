@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <cairn/io/rle.hpp>
 #include <cstddef>
-#include <io/rle.hpp>
 
 namespace cairn::io {
 namespace {

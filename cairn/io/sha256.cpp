@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <bit>
-#include <io/sha256.hpp>
+#include <cairn/io/sha256.hpp>
 
 namespace cairn::io {
 namespace {

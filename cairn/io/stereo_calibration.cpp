@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/calibration_forms.hpp>
+#include <cairn/io/stereo_calibration.hpp>
 #include <cmath>
-#include <io/calibration_forms.hpp>
-#include <io/stereo_calibration.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>

@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cairn/core/stereo_pair.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/io/raw_calibration.hpp>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
-#include "image_files.hpp"
-#include "raw_calibration.hpp"
 
 /// Calibration of raw cameras and rectification, by OpenCV's calib3d. In a build without it
 /// (CAIRN_CALIBRATION=OFF) every function here throws Error.

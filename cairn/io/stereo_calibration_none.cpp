@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
-#include <io/stereo_calibration.hpp>
+#include <cairn/io/stereo_calibration.hpp>
 
 namespace cairn::io {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "yaml_text.hpp"
+#include <cairn/io/yaml_text.hpp>
 
 #include <yaml-cpp/eventhandler.h>
 

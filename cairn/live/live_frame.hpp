@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "../io/results.hpp"
-#include "../source/sequence.hpp"
-#include "../source/sequence_run.hpp"
+#include <cairn/input/sequence.hpp>
+#include <cairn/live/sequence_run.hpp>
+#include <cairn/output/results.hpp>
 
 /// The loop of a robot: pairs arrive from a camera, the results of the newest go to sinks.
 namespace cairn::live {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "../source/sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 namespace cairn::live {
 

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "recorder.hpp"
+#include <cairn/live/recorder.hpp>
 
 #include <array>
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/output/follow_files.hpp>
 #include <condition_variable>
 #include <cstdio>
 #include <ctime>
 #include <deque>
-#include <io/calibration_files.hpp>
-#include <io/config_files.hpp>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <source/follow_files.hpp>
 #include <system_error>
 #include <thread>
 
-#include "../ros/mcap.hpp"
-#include "../source/camera/without_password.hpp"
+#include <cairn/input/camera/without_password.hpp>
+#include <cairn/ros/mcap.hpp>
 
 namespace cairn::live {
 namespace {

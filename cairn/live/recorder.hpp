@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
-#include "../ros/from_step.hpp"
-#include "live_frame.hpp"
+#include <cairn/live/live_frame.hpp>
+#include <cairn/ros/from_step.hpp>
 
 namespace cairn::live {
 

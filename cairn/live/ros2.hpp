@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "../ros/from_step.hpp"
-#include "live_frame.hpp"
+#include <cairn/live/live_frame.hpp>
+#include <cairn/ros/from_step.hpp>
 
 /// The results of every frame on ROS 2 topics (docs/ros2.md), through a module with Cyclone DDS (dds/).
 namespace cairn::live {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "dds/ros2_sink.hpp"
-#include "ros2.hpp"
+#include <cairn/live/dds/ros2_sink.hpp>
+#include <cairn/live/ros2.hpp>
 
 /// Linked directly, without a module: sanitizers need one program.
 namespace cairn::live {

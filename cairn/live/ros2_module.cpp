@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "dds/module.hpp"
+#include <cairn/live/dds/module.hpp>
 
 /// Loads DDS only if something is published.
 namespace cairn::live {

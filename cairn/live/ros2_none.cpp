@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 
-#include "ros2.hpp"
+#include <cairn/live/ros2.hpp>
 
 namespace cairn::live {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "runner.hpp"
+#include <cairn/live/runner.hpp>
 
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/segment.hpp>

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "latencies.hpp"
-#include "live_frame.hpp"
-#include "newest_slot.hpp"
+#include <cairn/live/latencies.hpp>
+#include <cairn/live/live_frame.hpp>
+#include <cairn/live/newest_slot.hpp>
 
 namespace cairn::live {
 

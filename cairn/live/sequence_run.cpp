@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "sequence_run.hpp"
+#include <cairn/live/sequence_run.hpp>
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/sequence/first_pose.hpp>
 #include <cstdlib>
 #include <iterator>
-#include <tracking/first_pose.hpp>
 #include <utility>
 
-#include "camera/without_password.hpp"
-#include "trajectory_files.hpp"
+#include <cairn/input/camera/without_password.hpp>
+#include <cairn/output/trajectory_files.hpp>
 
 namespace cairn::io {
 namespace {

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "../landmarks/map_file.hpp"
-#include "../tracking/follower.hpp"
-#include "../tracking/trajectory_error.hpp"
-#include "laser_scans.hpp"
-#include "priors.hpp"
-#include "sequence.hpp"
+#include <cairn/input/laser_scans.hpp>
+#include <cairn/input/priors.hpp>
+#include <cairn/input/sequence.hpp>
+#include <cairn/sequence/follower.hpp>
+#include <cairn/sequence/map_file.hpp>
+#include <cairn/sequence/trajectory_error.hpp>
 
 namespace cairn::io {
 

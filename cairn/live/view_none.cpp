@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 
-#include "view/view_server.hpp"
+#include <cairn/live/view/view_server.hpp>
 
 namespace cairn::live {
 

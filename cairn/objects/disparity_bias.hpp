@@ -3,8 +3,8 @@
 #pragma once
 
 #include <array>
-#include <cairn/grouping/fitted_trees.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cairn/regions/fitted_trees.hpp>
 #include <string_view>
 
 /// How much the disparity of an object differs from the true one because of its shape and its looks: smoothed

@@ -3,7 +3,7 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/scratch.hpp>
 #include <cairn/objects/fuse.hpp>
-#include <cairn/regions/label_kernels.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 #include <cassert>
 #include <numeric>
 #include <span>

@@ -4,12 +4,12 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/islands.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/point_kernels.hpp>
 #include <cairn/objects/ranks.hpp>
-#include <cairn/regions/label_kernels.hpp>
 #include <cairn/scene/floor_frame.hpp>
+#include <cairn/stereo/islands.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>

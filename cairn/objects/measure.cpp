@@ -6,8 +6,8 @@
 #include <cairn/core/scratch.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/objects/ranks.hpp>
-#include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/runs.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -5,8 +5,8 @@
 #include <array>
 #include <cairn/core/fields.hpp>
 #include <cairn/core/stereo_pair.hpp>
-#include <cairn/disparity/disparity_map.hpp>
 #include <cairn/regions/region_graph.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <optional>
 #include <vector>
 

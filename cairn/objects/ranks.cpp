@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/objects/ranks.hpp>
-#include <cairn/regions/label_kernels.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 #include <cmath>
 #include <cstdint>
 #include <vector>

@@ -12,7 +12,7 @@ namespace cairn {
 namespace {
 
 constexpr int kGrain = 64;          // rows
-constexpr double kDoubt = 0.08;     // px; also DOUBT of fitting/fit.py
+constexpr double kDoubt = 0.08;     // px; also DOUBT of lab/fit.py
 constexpr double kMostBias = 1;     // px; also MOST_CORRECTION there
 constexpr double kMostShare = 0.5;  // of the disparity: a distant object stays in front of the camera
 

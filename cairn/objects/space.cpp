@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/islands.hpp>
 #include <cairn/objects/space.hpp>
 #include <cairn/objects/space_kernels.hpp>
 #include <cairn/regions/runs.hpp>
+#include <cairn/stereo/islands.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>

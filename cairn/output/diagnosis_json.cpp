@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "diagnosis_json.hpp"
+#include <cairn/output/diagnosis_json.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "follow_files.hpp"
+#include <cairn/output/follow_files.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/rle.hpp>
+#include <cairn/output/overlay.hpp>
 #include <cmath>
 #include <cstdio>
-#include <io/atomic_file.hpp>
-#include <io/overlay.hpp>
-#include <io/rle.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "../landmarks/landmarks.hpp"
-#include "../tracking/follower.hpp"
+#include <cairn/sequence/follower.hpp>
+#include <cairn/sequence/landmarks.hpp>
 
 namespace cairn::io {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "follow_page.hpp"
+#include <cairn/output/follow_page.hpp>
 
 #include <algorithm>
+#include <cairn/output/overlay.hpp>
+#include <cairn/output/web/html_template.hpp>
+#include <cairn/output/web/page_parts.hpp>
 #include <cmath>
-#include <io/overlay.hpp>
 #include <nlohmann/json.hpp>
-#include <page/html_template.hpp>
-#include <page/page_parts.hpp>
 #include <utility>
 
-#include "follow_files.hpp"
+#include <cairn/output/follow_files.hpp>
 
 namespace cairn::io {
 namespace {

@@ -6,13 +6,13 @@
 #include <optional>
 #include <string>
 
-#include "../io/atomic_file.hpp"
-#include "../landmarks/landmarks.hpp"
-#include "../page/html_page.hpp"
-#include "../tracking/follower.hpp"
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/output/web/html_page.hpp>
+#include <cairn/sequence/follower.hpp>
+#include <cairn/sequence/landmarks.hpp>
 
 /// The player: the tracks of a sequence as one self-contained page for the browser. Layout, style and script
-/// are page/follow.html and the files next to it. (docs/looking_at_results.md, "The player")
+/// are cairn/output/web/follow.html and the files next to it. (docs/looking_at_results.md, "The player")
 namespace cairn::io {
 
 /// A step as text. `facts`: its line of tracks.jsonl without masks, and the label position of each track;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "json_line.hpp"
+#include <cairn/output/json_line.hpp>
 
 namespace cairn::io {
 namespace {

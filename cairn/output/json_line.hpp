@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "../tracking/pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
 /// Access to JSON from outside: type and range of each value are checked.
 namespace cairn::io {

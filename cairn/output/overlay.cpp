@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <cairn/output/overlay.hpp>
 #include <cmath>
 #include <cstdio>
-#include <io/overlay.hpp>
 #include <iterator>
 #include <limits>
 #include <opencv2/imgproc.hpp>

@@ -5,8 +5,8 @@
 #include <array>
 #include <cairn/core/image.hpp>
 #include <cairn/core/stereo_pair.hpp>
-#include <cairn/disparity/disparity_map.hpp>
 #include <cairn/objects/measure.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <cstdint>
 #include <optional>
 #include <vector>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "track_files.hpp"
+#include <cairn/output/track_files.hpp>
 
-#include "json_line.hpp"
+#include <cairn/output/json_line.hpp>
 
 #include <algorithm>
 #include <array>

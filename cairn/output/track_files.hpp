@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "../io/rle.hpp"
-#include "../tracking/pose.hpp"
-#include "../tracking/tracks.hpp"
+#include <cairn/io/rle.hpp>
+#include <cairn/sequence/pose.hpp>
+#include <cairn/sequence/tracks.hpp>
 
 /// Reading of the output of `cairn follow`. (docs/formats.md, "A sequence's result out")
 namespace cairn::io {

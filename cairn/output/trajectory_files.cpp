@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "trajectory_files.hpp"
+#include <cairn/output/trajectory_files.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/frame_names.hpp>
+#include <cairn/io/read_file.hpp>
 #include <cmath>
 #include <cstdio>
-#include <io/frame_names.hpp>
-#include <io/read_file.hpp>
 
-#include "names_and_numbers.hpp"
-#include "stamps.hpp"
-#include "text_lines.hpp"
+#include <cairn/io/names_and_numbers.hpp>
+#include <cairn/io/text_lines.hpp>
+#include <cairn/sequence/stamps.hpp>
 
 namespace cairn::io {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../tracking/trajectory_error.hpp"
+#include <cairn/sequence/trajectory_error.hpp>
 
 namespace cairn::io {
 

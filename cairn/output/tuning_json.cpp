@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "tuning_json.hpp"
+#include <cairn/output/tuning_json.hpp>
 
 #include <algorithm>
 #include <array>

@@ -89,7 +89,7 @@ Config Config::preset(std::string_view name) {
               (close.empty() ? "" : "; did you mean '" + close + "'?"));
 }
 
-// Fitted by fitting/search_paper.cpp.
+// Fitted by lab/search_paper.cpp.
 Config Config::paper() {
   Config c;
   c.epipolar_correction = {};

@@ -2,24 +2,24 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/flatness.hpp>
-#include <cairn/disparity/left_right.hpp>
-#include <cairn/disparity/speckle.hpp>
-#include <cairn/disparity/texture.hpp>
-#include <cairn/disparity/uniqueness.hpp>
-#include <cairn/grouping/evidence.hpp>
-#include <cairn/grouping/superpixels.hpp>
-#include <cairn/matching/epipolar_correction.hpp>
-#include <cairn/matching/match.hpp>
-#include <cairn/matching/semi_global.hpp>
-#include <cairn/matching/subpixel.hpp>
 #include <cairn/objects/fuse.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/objects/space.hpp>
+#include <cairn/regions/evidence.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>
+#include <cairn/regions/superpixels.hpp>
 #include <cairn/scene/background.hpp>
 #include <cairn/scene/ground_plane.hpp>
+#include <cairn/stereo/epipolar_correction.hpp>
+#include <cairn/stereo/flatness.hpp>
+#include <cairn/stereo/left_right.hpp>
+#include <cairn/stereo/match.hpp>
+#include <cairn/stereo/semi_global.hpp>
+#include <cairn/stereo/speckle.hpp>
+#include <cairn/stereo/subpixel.hpp>
+#include <cairn/stereo/texture.hpp>
+#include <cairn/stereo/uniqueness.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,7 +50,7 @@ struct Config {
   ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.3F};
   SpaceConfig space;
 
-  /// The method of the paper; the thresholds are ours, fitted by fitting/search_paper.cpp.
+  /// The method of the paper; the thresholds are ours, fitted by lab/search_paper.cpp.
   static Config paper();
   /// A preset by name: "default", "paper". Throws Error naming the known ones.
   static Config preset(std::string_view name);

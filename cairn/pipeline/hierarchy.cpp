@@ -3,10 +3,10 @@
 //
 // The method with fusion.method=hierarchy: one call per stage, in the order of the data.
 #include <cairn/core/later.hpp>
-#include <cairn/disparity/confidence.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/refine_objects.hpp>
 #include <cairn/pipeline/methods.hpp>
+#include <cairn/stereo/confidence.hpp>
 #include <cmath>
 #include <utility>
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/grouping/object_hints.hpp>
 #include <cairn/pipeline/matched_scene.hpp>
+#include <cairn/regions/object_hints.hpp>
 
 /// The methods, one source file each; segment() selects. Private to the library.
 namespace cairn {

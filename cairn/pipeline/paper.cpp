@@ -3,9 +3,9 @@
 //
 // The paper's method: one call per stage, in the order of the data.
 #include <cairn/core/later.hpp>
-#include <cairn/disparity/confidence.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/pipeline/methods.hpp>
+#include <cairn/stereo/confidence.hpp>
 #include <utility>
 
 namespace cairn {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
-#include <cairn/disparity/confidence.hpp>
 #include <cairn/pipeline/methods.hpp>
+#include <cairn/stereo/confidence.hpp>
 #include <utility>
 
 namespace cairn {

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/grouping/choose_objects.hpp>
 #include <cairn/objects/space.hpp>
 #include <cairn/pipeline/config.hpp>
+#include <cairn/regions/choose_objects.hpp>
 
 namespace cairn {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/grouping/choose_objects.hpp>
-#include <cairn/grouping/segmentation_of.hpp>
+#include <cairn/regions/choose_objects.hpp>
+#include <cairn/regions/segmentation_of.hpp>
 #include <cmath>
 
 namespace cairn {

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/disparity_map.hpp>
-#include <cairn/grouping/merge_tree.hpp>
+#include <cairn/regions/merge_tree.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <vector>
 
 namespace cairn {

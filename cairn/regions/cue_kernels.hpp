@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/grouping/fitted_trees.hpp>
+#include <cairn/regions/fitted_trees.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <cstdint>
 #include <limits>

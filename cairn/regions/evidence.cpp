@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
-#include <cairn/grouping/evidence.hpp>
-#include <cairn/grouping/evidence_kernels.hpp>
+#include <cairn/regions/evidence.hpp>
+#include <cairn/regions/evidence_kernels.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>

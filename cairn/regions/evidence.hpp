@@ -4,7 +4,7 @@
 
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
-#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 
 namespace cairn {
 

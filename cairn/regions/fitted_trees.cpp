@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/ids.hpp>
-#include <cairn/grouping/cue_kernels.hpp>
-#include <cairn/grouping/fitted_trees.hpp>
+#include <cairn/regions/cue_kernels.hpp>
+#include <cairn/regions/fitted_trees.hpp>
 #include <utility>
 
 namespace cairn {
 namespace {
 
-#include <cairn/grouping/fitted_same_thing.inc>
-#include <cairn/grouping/fitted_whole_object.inc>
+#include <cairn/regions/fitted_same_thing.inc>
+#include <cairn/regions/fitted_whole_object.inc>
 
 // A step down depends on the previous one, so several trees are walked concurrently.
 constexpr std::size_t kAtOnce = 8;

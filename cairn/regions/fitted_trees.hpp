@@ -11,7 +11,7 @@
 namespace cairn {
 
 /// A sum of small decision trees, fitted by gradient boosting (Friedman 2001): the output is the sum of the
-/// leaves that a sample reaches. The numbers were fitted by fitting/fit.py; comparisons and one sum in a
+/// leaves that a sample reaches. The numbers were fitted by lab/fit.py; comparisons and one sum in a
 /// fixed order give the same bits on every platform.
 class FittedTrees {
  public:

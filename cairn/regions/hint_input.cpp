@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/parallel.hpp>
-#include <cairn/grouping/framed_image.hpp>
-#include <cairn/grouping/hint_kernels.hpp>
-#include <cairn/grouping/object_hints.hpp>
-#include <cairn/grouping/surfaces_behind.hpp>
+#include <cairn/regions/framed_image.hpp>
+#include <cairn/regions/hint_kernels.hpp>
+#include <cairn/regions/object_hints.hpp>
+#include <cairn/regions/surfaces_behind.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/grouping/merge_tree.hpp>
+#include <cairn/regions/merge_tree.hpp>
 #include <numeric>
 #include <queue>
 #include <span>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/grouping/fitted_trees.hpp>
-#include <cairn/grouping/region_features.hpp>
+#include <cairn/regions/fitted_trees.hpp>
+#include <cairn/regions/region_features.hpp>
 #include <functional>
 #include <vector>
 

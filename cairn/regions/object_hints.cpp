@@ -5,15 +5,15 @@
 #include <cairn/core/ids.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/scratch.hpp>
-#include <cairn/grouping/convolution_kernels.hpp>
-#include <cairn/grouping/framed_image.hpp>
-#include <cairn/grouping/object_hints.hpp>
+#include <cairn/regions/convolution_kernels.hpp>
+#include <cairn/regions/framed_image.hpp>
+#include <cairn/regions/object_hints.hpp>
 #include <vector>
 
 namespace cairn {
 namespace {
 
-#include <cairn/grouping/fitted_hints.inc>
+#include <cairn/regions/fitted_hints.inc>
 
 constexpr std::size_t count_of_weights() {
   std::size_t count = 0;

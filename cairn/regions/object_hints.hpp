@@ -5,7 +5,7 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
-#include <cairn/grouping/region_cues.hpp>
+#include <cairn/regions/region_cues.hpp>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -67,7 +67,7 @@ class HintNetwork {
   std::unique_ptr<Numbers> numbers_;
 };
 
-/// The network of the library, fitted by fitting/fit_hints.py.
+/// The network of the library, fitted by lab/fit_hints.py.
 const HintNetwork& hint_network();
 
 /// One hint for each of hint_cells(), from hint_input(). An encoder halves the resolution four times; a decoder

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/grouping/contacts.hpp>
-#include <cairn/grouping/cue_kernels.hpp>
-#include <cairn/grouping/object_hints.hpp>
-#include <cairn/grouping/region_cues.hpp>
-#include <cairn/grouping/surfaces_behind.hpp>
+#include <cairn/regions/contacts.hpp>
+#include <cairn/regions/cue_kernels.hpp>
+#include <cairn/regions/object_hints.hpp>
+#include <cairn/regions/region_cues.hpp>
+#include <cairn/regions/surfaces_behind.hpp>
 #include <limits>
 #include <utility>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/exec.hpp>
-#include <cairn/grouping/superpixels.hpp>
+#include <cairn/regions/superpixels.hpp>
 #include <cairn/scene/background.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <cstdint>
@@ -29,7 +29,7 @@ struct HintSums {
   friend bool operator==(const HintSums&, const HintSums&) = default;
 };
 
-struct ObjectHint;  // cairn/grouping/object_hints.hpp
+struct ObjectHint;  // cairn/regions/object_hints.hpp
 
 /// The inputs per pixel. Views of one size; `rgb` may be empty.
 struct Cues {

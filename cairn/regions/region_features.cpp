@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/grouping/region_features.hpp>
+#include <cairn/regions/region_features.hpp>
 #include <cassert>
 #include <cmath>
 #include <utility>

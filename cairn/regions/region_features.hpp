@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <cairn/grouping/region_cues.hpp>
+#include <cairn/regions/region_cues.hpp>
 #include <span>
 #include <string_view>
 

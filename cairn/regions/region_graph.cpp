@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/scratch.hpp>
-#include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/region_graph.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 #include <limits>
 #include <numeric>
 

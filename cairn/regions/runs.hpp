@@ -7,7 +7,7 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
-#include <cairn/regions/label_kernels.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 #include <limits>
 #include <vector>
 

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/disjoint_sets.hpp>
-#include <cairn/disparity/gradient.hpp>
 #include <cairn/regions/gradient_threshold.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/percent.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/split_floor.hpp>
 #include <cairn/regions/watershed.hpp>
+#include <cairn/stereo/gradient.hpp>
 
 namespace cairn {
 namespace {

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/disparity_map.hpp>
 #include <cairn/regions/region_graph.hpp>
 #include <cairn/regions/segment_config.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 
 namespace cairn {
 

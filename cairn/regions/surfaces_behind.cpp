@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/grouping/surfaces_behind.hpp>
+#include <cairn/regions/surfaces_behind.hpp>
 #include <optional>
 
 namespace cairn {

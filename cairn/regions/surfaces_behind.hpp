@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/grouping/cue_kernels.hpp>
-#include <cairn/grouping/region_cues.hpp>
+#include <cairn/regions/cue_kernels.hpp>
+#include <cairn/regions/region_cues.hpp>
 #include <vector>
 
 namespace cairn {

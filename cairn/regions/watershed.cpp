@@ -5,8 +5,8 @@
 #include <bit>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/scratch.hpp>
-#include <cairn/regions/label_kernels.hpp>
 #include <cairn/regions/watershed.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 #include <numeric>
 #include <utility>
 

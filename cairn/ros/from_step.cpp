@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "from_step.hpp"
+#include <cairn/ros/from_step.hpp>
 
 #include <algorithm>
 #include <bit>

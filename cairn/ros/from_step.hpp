@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "../tracking/follower.hpp"
-#include "messages.hpp"
+#include <cairn/ros/messages.hpp>
+#include <cairn/sequence/follower.hpp>
 
 /// The results of a frame as ROS messages. Positions are in the left camera's optical frame (x right, y down,
 /// z forward), except for the grid, which is in that of the floor.

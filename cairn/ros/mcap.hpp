@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "messages.hpp"
+#include <cairn/ros/messages.hpp>
 
 /// Recordings in MCAP format (mcap.dev), which ROS 2, Foxglove and Lichtblick read and write. In a build
 /// without it (CAIRN_ZSTD=OFF), opening a file throws Error. (docs/recordings.md)

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "mcap.hpp"
+#include <cairn/ros/mcap.hpp>
 
 /// The records of an MCAP file by its specification (mcap.dev/spec); internal to ros.
 namespace cairn::ros::mcap {

@@ -3,7 +3,7 @@
 #include <cairn/core/error.hpp>
 #include <fstream>
 
-#include "mcap.hpp"
+#include <cairn/ros/mcap.hpp>
 
 namespace cairn::ros {
 namespace {

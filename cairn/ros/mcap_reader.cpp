@@ -13,7 +13,7 @@
 #include <new>
 #include <set>
 
-#include "mcap_format.hpp"
+#include <cairn/ros/mcap_format.hpp>
 
 namespace cairn::ros {
 namespace {

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <limits>
 
-#include "mcap_format.hpp"
+#include <cairn/ros/mcap_format.hpp>
 
 namespace cairn::ros {
 namespace {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "../tracking/pose.hpp"
-#include "cdr.hpp"
+#include <cairn/ros/cdr.hpp>
+#include <cairn/sequence/pose.hpp>
 
 /// The ROS 2 messages that we send, record and read, as defined from Humble on. Each member is listed once,
 /// in each(), for both bytes and definitions.

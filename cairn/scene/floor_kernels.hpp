@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/disparity/reject.hpp>
 #include <cairn/scene/ground_plane.hpp>
+#include <cairn/stereo/reject.hpp>
 #include <cstdint>
 
 /// The kernels of reject_below_ground() and label_floor(), per pixel of a row; one set per instruction set.

@@ -4,10 +4,10 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/image/local_contrast.hpp>
-#include <cairn/regions/label_kernels.hpp>
 #include <cairn/scene/floor_search.hpp>
 #include <cairn/scene/plane_fit.hpp>
 #include <cairn/scene/plane_kernels.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -4,11 +4,11 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/speckle.hpp>
 #include <cairn/scene/floor_kernels.hpp>
 #include <cairn/scene/floor_search.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <cairn/scene/plane_through_pairs.hpp>
+#include <cairn/stereo/speckle.hpp>
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "kalman.hpp"
-#include "tracks.hpp"
+#include <cairn/sequence/kalman.hpp>
+#include <cairn/sequence/tracks.hpp>
 
 namespace cairn {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "assign.hpp"
+#include <cairn/sequence/assign.hpp>
 
 #include <dlib/matrix.h>
 #include <dlib/optimization/max_cost_assignment.h>

@@ -18,7 +18,7 @@ struct CostTable {
 
 /// For each row its column, or −1: the assignment of lowest total cost. Of several, the one whose first row
 /// has the lowest column (−1 counts as the highest), then the second, and so on. Private to the library.
-/// (Kuhn 1955; the exhaustive slow twin is in tests/unit/association_test.cpp.)
+/// (Kuhn 1955; the exhaustive slow twin is in tests/unit/sequence/association_test.cpp.)
 std::vector<int> assign(const CostTable& table);
 
 }  // namespace cairn

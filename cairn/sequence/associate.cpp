@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "assign.hpp"
-#include "kalman.hpp"
-#include "tracks.hpp"
+#include <cairn/sequence/assign.hpp>
+#include <cairn/sequence/kalman.hpp>
+#include <cairn/sequence/tracks.hpp>
 
 namespace cairn {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "geometry.hpp"
+#include <cairn/sequence/landmark_geometry.hpp>
 
 /// Objects that moved, came or left; internal to this library.
 namespace cairn::landmarks {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "control.hpp"
+#include <cairn/sequence/control.hpp>
 
 #include <algorithm>
 #include <cairn/core/error.hpp>

@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "control.hpp"
-#include "follower.hpp"
+#include <cairn/sequence/control.hpp>
+#include <cairn/sequence/follower.hpp>
 
 namespace cairn {
 

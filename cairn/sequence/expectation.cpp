@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry.hpp"
+#include <cairn/sequence/landmark_geometry.hpp>
 
 namespace cairn {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "first_pose.hpp"
+#include <cairn/sequence/first_pose.hpp>
 
 #include <cairn/scene/floor_frame.hpp>
 #include <cmath>

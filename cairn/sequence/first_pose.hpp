@@ -5,7 +5,7 @@
 #include <cairn/scene/ground_plane.hpp>
 #include <optional>
 
-#include "pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
 namespace cairn {
 

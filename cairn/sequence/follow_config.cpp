@@ -3,7 +3,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/option_walk.hpp>
 
-#include "follow_config.hpp"
+#include <cairn/sequence/follow_config.hpp>
 
 namespace cairn {
 

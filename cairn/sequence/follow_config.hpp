@@ -4,11 +4,11 @@
 
 #include <cairn/pipeline/config.hpp>
 
-#include "control.hpp"
-#include "landmarks_config.hpp"
-#include "odometry.hpp"
-#include "repair.hpp"
-#include "tracks.hpp"
+#include <cairn/sequence/control.hpp>
+#include <cairn/sequence/landmarks_config.hpp>
+#include <cairn/sequence/odometry.hpp>
+#include <cairn/sequence/repair.hpp>
+#include <cairn/sequence/tracks.hpp>
 
 namespace cairn {
 

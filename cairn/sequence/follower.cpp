@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "follower.hpp"
+#include <cairn/sequence/follower.hpp>
 
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <utility>
 
-#include "controller.hpp"
-#include "first_pose.hpp"
+#include <cairn/sequence/controller.hpp>
+#include <cairn/sequence/first_pose.hpp>
 
 namespace cairn {
 namespace {

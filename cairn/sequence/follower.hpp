@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include "follow_config.hpp"
-#include "reliability.hpp"
-#include "warp.hpp"
+#include <cairn/sequence/follow_config.hpp>
+#include <cairn/sequence/reliability.hpp>
+#include <cairn/sequence/warp.hpp>
 
 namespace cairn {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "kalman.hpp"
+#include <cairn/sequence/kalman.hpp>
 
 #include <Eigen/Dense>
 #include <cmath>

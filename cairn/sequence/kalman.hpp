@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include "tracks.hpp"
+#include <cairn/sequence/tracks.hpp>
 
 /// The two filters of a track (Kalman 1960). Private to the library.
 namespace cairn {

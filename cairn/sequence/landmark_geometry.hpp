@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "landmarks.hpp"
+#include <cairn/sequence/landmarks.hpp>
 
 /// Shared by the sources of this library; not installed.
 namespace cairn::landmarks {

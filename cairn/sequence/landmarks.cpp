@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "landmarks.hpp"
+#include <cairn/sequence/landmarks.hpp>
 
 #include <algorithm>
+#include <cairn/io/image_files.hpp>
 #include <cmath>
-#include <io/image_files.hpp>
 #include <limits>
 #include <numbers>
 
-#include "changes.hpp"
-#include "geometry.hpp"
+#include <cairn/sequence/changes.hpp>
+#include <cairn/sequence/landmark_geometry.hpp>
 
 namespace cairn {
 namespace {

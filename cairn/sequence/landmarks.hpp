@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "../tracking/follower.hpp"
-#include "../tracking/landmarks_config.hpp"
-#include "../tracking/tracks.hpp"
+#include <cairn/sequence/follower.hpp>
+#include <cairn/sequence/landmarks_config.hpp>
+#include <cairn/sequence/tracks.hpp>
 
 namespace cairn {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "map_exports.hpp"
+#include <cairn/sequence/map_exports.hpp>
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "geometry.hpp"
+#include <cairn/sequence/landmark_geometry.hpp>
 
 namespace cairn {
 namespace {

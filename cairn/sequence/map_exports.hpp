@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "map_file.hpp"
+#include <cairn/sequence/map_file.hpp>
 
 namespace cairn {
 

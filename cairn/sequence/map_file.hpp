@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "landmarks.hpp"
+#include <cairn/sequence/landmarks.hpp>
 
 namespace cairn {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "motion_fit.hpp"
+#include <cairn/sequence/motion_fit.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
-#include "twist.hpp"
+#include <cairn/sequence/twist.hpp>
 
 namespace cairn {
 namespace {

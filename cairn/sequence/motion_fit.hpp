@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "odometry.hpp"
+#include <cairn/sequence/odometry.hpp>
 
 namespace cairn {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "odometry.hpp"
+#include <cairn/sequence/odometry.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -10,8 +10,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include "motion_fit.hpp"
-#include "twist.hpp"
+#include <cairn/sequence/motion_fit.hpp>
+#include <cairn/sequence/twist.hpp>
 
 namespace cairn {
 

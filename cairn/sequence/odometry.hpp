@@ -4,12 +4,12 @@
 
 #include <cairn/core/fields.hpp>
 #include <cairn/core/stereo_pair.hpp>
-#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
 namespace cairn {
 

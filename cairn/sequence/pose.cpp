@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
 namespace cairn {
 namespace {

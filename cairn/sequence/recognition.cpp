@@ -5,8 +5,8 @@
 #include <numbers>
 #include <tuple>
 
-#include "geometry.hpp"
-#include "landmarks.hpp"
+#include <cairn/sequence/landmark_geometry.hpp>
+#include <cairn/sequence/landmarks.hpp>
 
 namespace cairn {
 

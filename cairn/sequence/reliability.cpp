@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "reliability.hpp"
+#include <cairn/sequence/reliability.hpp>
 
 #include <algorithm>
 #include <cairn/evaluation/consistency.hpp>
@@ -9,8 +9,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "first_pose.hpp"
-#include "follower.hpp"
+#include <cairn/sequence/first_pose.hpp>
+#include <cairn/sequence/follower.hpp>
 
 namespace cairn {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "warp.hpp"
+#include <cairn/sequence/warp.hpp>
 
 namespace cairn {
 

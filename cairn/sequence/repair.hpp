@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cairn/core/fields.hpp>
-#include <cairn/grouping/choose_objects.hpp>
-#include <cairn/grouping/superpixels.hpp>
+#include <cairn/regions/choose_objects.hpp>
+#include <cairn/regions/superpixels.hpp>
 
-#include "warp.hpp"
+#include <cairn/sequence/warp.hpp>
 
 namespace cairn {
 

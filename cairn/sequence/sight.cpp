@@ -4,7 +4,7 @@
 #include <cairn/scene/floor_frame.hpp>
 #include <cmath>
 
-#include "tracks.hpp"
+#include <cairn/sequence/tracks.hpp>
 
 namespace cairn {
 namespace {

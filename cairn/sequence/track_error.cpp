@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "track_error.hpp"
+#include <cairn/sequence/track_error.hpp>
 
 #include <dlib/optimization/max_cost_assignment.h>
 

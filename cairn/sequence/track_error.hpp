@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pose.hpp"
-#include "tracks.hpp"
+#include <cairn/sequence/pose.hpp>
+#include <cairn/sequence/tracks.hpp>
 
 namespace cairn {
 

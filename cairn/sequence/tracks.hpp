@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
 namespace cairn {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "trajectory_error.hpp"
+#include <cairn/sequence/trajectory_error.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "twist.hpp"
+#include <cairn/sequence/twist.hpp>
 
 namespace cairn {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
 namespace cairn {
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
 /// Small motions as vectors; internal to tracking.
 namespace cairn {

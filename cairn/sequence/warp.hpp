@@ -6,8 +6,8 @@
 #include <cairn/core/stereo_pair.hpp>
 #include <cairn/objects/measure.hpp>
 
-#include "pose.hpp"
-#include "tracks.hpp"
+#include <cairn/sequence/pose.hpp>
+#include <cairn/sequence/tracks.hpp>
 
 namespace cairn {
 

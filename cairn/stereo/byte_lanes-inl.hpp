@@ -8,5 +8,5 @@ namespace cairn::kernels::plain_kernels {
 namespace bytes = plain_bytes;
 }
 #else
-#include <cairn/matching/byte_lanes_highway-inl.hpp>
+#include <cairn/stereo/byte_lanes_highway-inl.hpp>
 #endif

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/confidence.hpp>
-#include <cairn/disparity/confidence_kernels.hpp>
+#include <cairn/stereo/confidence.hpp>
+#include <cairn/stereo/confidence_kernels.hpp>
 #include <cassert>
 #include <vector>
 

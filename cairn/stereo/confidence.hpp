@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/disparity/disparity_map.hpp>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/disparity_map.hpp>
+#include <cairn/stereo/match.hpp>
 
 namespace cairn {
 
@@ -19,7 +19,7 @@ struct ConfidenceModel {
 };
 
 /// The model for the costs of a method, fitted to the rendered development frames by
-/// `benchmarks/studies.py confidence`.
+/// `lab/studies.py confidence`.
 constexpr ConfidenceModel confidence_model(MatchMethod method) {
   return method == MatchMethod::semi_global
              ? ConfidenceModel{.bias = 4.55F,

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/disparity/confidence.hpp>
+#include <cairn/stereo/confidence.hpp>
 #include <cstdint>
 
 /// The kernels of estimate_confidence(), per pixel of a row; one set per instruction set. Private to the

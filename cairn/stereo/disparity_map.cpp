@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/disparity_map.hpp>
-#include <cairn/disparity/disparity_map_kernels.hpp>
+#include <cairn/stereo/disparity_map.hpp>
+#include <cairn/stereo/disparity_map_kernels.hpp>
 #include <cassert>
 #include <cmath>
 #include <limits>

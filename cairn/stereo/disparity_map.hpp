@@ -4,7 +4,7 @@
 
 #include <cairn/core/exec.hpp>
 #include <cairn/core/image.hpp>
-#include <cairn/disparity/reject.hpp>
+#include <cairn/stereo/reject.hpp>
 #include <initializer_list>
 
 namespace cairn {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/disparity/reject.hpp>
+#include <cairn/stereo/reject.hpp>
 #include <cstdint>
 
 /// The kernels of combine(): the rejection bits of a row; one set per instruction set. Private to the

@@ -4,7 +4,7 @@
 #include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/image/sparse_points.hpp>
-#include <cairn/matching/epipolar_correction.hpp>
+#include <cairn/stereo/epipolar_correction.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>

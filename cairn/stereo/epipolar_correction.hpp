@@ -6,7 +6,7 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
 #include <cairn/core/stereo_pair.hpp>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
 #include <cstdint>
 
 namespace cairn {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/flatness.hpp>
-#include <cairn/disparity/flatness_kernels.hpp>
+#include <cairn/stereo/flatness.hpp>
+#include <cairn/stereo/flatness_kernels.hpp>
 #include <cassert>
 
 namespace cairn {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/disparity/reject.hpp>
+#include <cairn/stereo/reject.hpp>
 
 /// The kernels of reject_flat(), per pixel of a row; one set per instruction set. Private to the library.
 namespace cairn::kernels {

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/gradient.hpp>
-#include <cairn/disparity/gradient_kernels.hpp>
 #include <cairn/image/gaussian.hpp>
+#include <cairn/stereo/gradient.hpp>
+#include <cairn/stereo/gradient_kernels.hpp>
 #include <cstddef>
 #include <cstdlib>
 #include <vector>

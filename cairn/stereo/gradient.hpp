@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <cstdint>
 
 namespace cairn {

@@ -12,10 +12,10 @@ namespace cairn::kernels {
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
 struct DisparityGradientKernels {
-  /// See gradient() in disparity/gradient.hpp.
+  /// See gradient() in stereo/gradient.hpp.
   void (*disparity_steepness)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
                               int width, std::uint16_t* out);
-  /// Disparities in 1/16 px: see quantised() in disparity/gradient.hpp.
+  /// Disparities in 1/16 px: see quantised() in stereo/gradient.hpp.
   void (*quantise)(const float* disparity_px, int width, std::int16_t* out);
 };
 

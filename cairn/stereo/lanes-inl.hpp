@@ -8,5 +8,5 @@ namespace cairn::kernels::plain_kernels {
 namespace lanes = plain;
 }
 #else
-#include <cairn/matching/lanes_highway-inl.hpp>
+#include <cairn/stereo/lanes_highway-inl.hpp>
 #endif

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/scratch.hpp>
-#include <cairn/disparity/left_right.hpp>
-#include <cairn/disparity/left_right_kernels.hpp>
+#include <cairn/stereo/left_right.hpp>
+#include <cairn/stereo/left_right_kernels.hpp>
 #include <cassert>
 #include <cmath>
 #include <cstddef>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <array>
-#include <cairn/disparity/reject.hpp>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
+#include <cairn/stereo/reject.hpp>
 
 namespace cairn {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/disparity/left_right_kernels.hpp>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/left_right_kernels.hpp>
+#include <cairn/stereo/match.hpp>
 #include <cstdint>
 #include <cstdlib>
 
-#define CAIRN_KERNELS "cairn/disparity/left_right_kernels-inl.hpp"
+#define CAIRN_KERNELS "cairn/stereo/left_right_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>
 
 CAIRN_CHOOSE_KERNELS(LeftRightKernels, left_right_kernels, kLeftRightKernels)

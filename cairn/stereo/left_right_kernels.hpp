@@ -4,7 +4,7 @@
 
 #include <bit>
 #include <cairn/core/exec.hpp>
-#include <cairn/disparity/reject.hpp>
+#include <cairn/stereo/reject.hpp>
 #include <cstdint>
 
 /// The kernels of reject_inconsistent(), per pixel of a row; one set per instruction set. Private to the

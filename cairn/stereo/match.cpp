@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/image/prefilter.hpp>
-#include <cairn/matching/match.hpp>
-#include <cairn/matching/window_kernels.hpp>
+#include <cairn/stereo/match.hpp>
+#include <cairn/stereo/window_kernels.hpp>
 
 namespace cairn {
 namespace {

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/matching/semi_global.hpp>
-#include <cairn/matching/semi_global_kernels.hpp>
+#include <cairn/stereo/semi_global.hpp>
+#include <cairn/stereo/semi_global_kernels.hpp>
 #include <cmath>
 
 namespace cairn {

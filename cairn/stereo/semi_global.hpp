@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
 
 namespace cairn {
 

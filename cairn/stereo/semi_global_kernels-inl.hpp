@@ -8,8 +8,8 @@
 // L is at most 54 + 127. For the same reason a saturated L + P1 has no effect.
 //
 // A path adds at most P2 to C. Only that part is stored for the vertical paths, both in the same byte.
-#include <cairn/matching/byte_lanes-inl.hpp>
-#include <cairn/matching/lanes-inl.hpp>
+#include <cairn/stereo/byte_lanes-inl.hpp>
+#include <cairn/stereo/lanes-inl.hpp>
 
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {

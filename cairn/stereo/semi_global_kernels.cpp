@@ -4,15 +4,15 @@
 #include <array>
 #include <bit>
 #include <cairn/core/scratch.hpp>
-#include <cairn/matching/byte_lanes_plain.hpp>
-#include <cairn/matching/lanes_plain.hpp>
-#include <cairn/matching/memory.hpp>
-#include <cairn/matching/semi_global_kernels.hpp>
+#include <cairn/stereo/byte_lanes_plain.hpp>
+#include <cairn/stereo/lanes_plain.hpp>
+#include <cairn/stereo/memory.hpp>
+#include <cairn/stereo/semi_global_kernels.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 
-#define CAIRN_KERNELS "cairn/matching/semi_global_kernels-inl.hpp"
+#define CAIRN_KERNELS "cairn/stereo/semi_global_kernels-inl.hpp"
 #define CAIRN_KERNELS_USE_VECTORS
 #include <cairn/core/each_target-inl.hpp>
 

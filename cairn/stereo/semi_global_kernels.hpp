@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/exec.hpp>
-#include <cairn/matching/match.hpp>
-#include <cairn/matching/memory.hpp>
+#include <cairn/stereo/match.hpp>
+#include <cairn/stereo/memory.hpp>
 #include <cstdint>
 
 /// The kernels of match_semi_global(): everything that runs per pixel; one set per instruction set. Private

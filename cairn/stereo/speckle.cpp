@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/disparity/islands.hpp>
-#include <cairn/disparity/speckle.hpp>
+#include <cairn/stereo/islands.hpp>
+#include <cairn/stereo/speckle.hpp>
 #include <cmath>
 #include <limits>
 

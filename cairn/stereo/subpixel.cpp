@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
-#include <cairn/matching/subpixel.hpp>
-#include <cairn/matching/subpixel_kernels.hpp>
+#include <cairn/stereo/subpixel.hpp>
+#include <cairn/stereo/subpixel_kernels.hpp>
 
 namespace cairn {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
 #include <cstdint>
 
 namespace cairn {

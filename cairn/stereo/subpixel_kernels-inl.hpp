@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // No include guard: compiled once for each target, over the vocabulary `lanes` of that target.
-#include <cairn/matching/lanes-inl.hpp>
+#include <cairn/stereo/lanes-inl.hpp>
 
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {

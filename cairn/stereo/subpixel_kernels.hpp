@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/matching/subpixel.hpp>
+#include <cairn/stereo/subpixel.hpp>
 #include <cstdint>
 
 /// The kernels of refine_subpixel(), per pixel of a row; one set per instruction set. Private to the library.

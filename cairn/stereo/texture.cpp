@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/disparity_map_kernels.hpp>
-#include <cairn/disparity/texture.hpp>
 #include <cairn/image/texture.hpp>
+#include <cairn/stereo/disparity_map_kernels.hpp>
+#include <cairn/stereo/texture.hpp>
 
 namespace cairn {
 

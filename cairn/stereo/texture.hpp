@@ -4,7 +4,7 @@
 
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
-#include <cairn/disparity/reject.hpp>
+#include <cairn/stereo/reject.hpp>
 
 namespace cairn {
 

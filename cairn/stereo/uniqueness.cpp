@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/parallel.hpp>
-#include <cairn/disparity/uniqueness.hpp>
-#include <cairn/disparity/uniqueness_kernels.hpp>
+#include <cairn/stereo/uniqueness.hpp>
+#include <cairn/stereo/uniqueness_kernels.hpp>
 #include <cassert>
 
 namespace cairn {

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/reject.hpp>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
+#include <cairn/stereo/reject.hpp>
 
 namespace cairn {
 

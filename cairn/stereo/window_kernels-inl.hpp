@@ -6,10 +6,10 @@
 // The walk over a band of rows; geometry-inl.hpp describes the matching of a row.
 
 // clang-format off
-#include <cairn/matching/lanes-inl.hpp>
-#include <cairn/matching/geometry-inl.hpp>
-#include <cairn/matching/winners-inl.hpp>
-#include <cairn/matching/window_sums-inl.hpp>
+#include <cairn/stereo/lanes-inl.hpp>
+#include <cairn/stereo/geometry-inl.hpp>
+#include <cairn/stereo/winners-inl.hpp>
+#include <cairn/stereo/window_sums-inl.hpp>
 // clang-format on
 
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <array>
 #include <cairn/core/target.hpp>
-#include <cairn/matching/window_kernels.hpp>
+#include <cairn/stereo/window_kernels.hpp>
 #include <cstddef>
 #include <utility>
 

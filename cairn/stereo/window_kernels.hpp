@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
 #include <cstdint>
 
 /// The interface to the instruction sets: window comparison for match(). Private to the library.

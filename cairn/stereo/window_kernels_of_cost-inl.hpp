@@ -6,17 +6,17 @@
 #include <array>
 #include <bit>
 #include <cairn/core/scratch.hpp>
-#include <cairn/matching/lanes_plain.hpp>
-#include <cairn/matching/memory.hpp>
-#include <cairn/matching/pixel_math.hpp>
-#include <cairn/matching/window_kernels.hpp>
+#include <cairn/stereo/lanes_plain.hpp>
+#include <cairn/stereo/memory.hpp>
+#include <cairn/stereo/pixel_math.hpp>
+#include <cairn/stereo/window_kernels.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
 #include <vector>
 
-#define CAIRN_KERNELS "cairn/matching/window_kernels-inl.hpp"
+#define CAIRN_KERNELS "cairn/stereo/window_kernels-inl.hpp"
 #define CAIRN_KERNELS_USE_VECTORS
 #include <cairn/core/each_target-inl.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "drawn_pair.hpp"
+#include <cairn/timing/drawn_pair.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "frame_times.hpp"
+#include <cairn/timing/frame_times.hpp>
 
 #include <sys/resource.h>
 
@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-#include "clock.hpp"
+#include <cairn/timing/clock.hpp>
 
 namespace cairn::report {
 namespace {

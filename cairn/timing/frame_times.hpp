@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "opencv_matchers.hpp"
+#include <cairn/timing/opencv_matchers.hpp>
 
 /// The time of the method, per stage and frame, next to that of other matchers.
 namespace cairn::report {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "opencv_matchers.hpp"
+#include <cairn/timing/opencv_matchers.hpp>
 
 #include <array>
 #include <cairn/core/error.hpp>
@@ -9,7 +9,7 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
-#include "opencv_matrix.hpp"
+#include <cairn/timing/opencv_matrix.hpp>
 
 namespace cairn::report {
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 
-#include "opencv_matchers.hpp"
+#include <cairn/timing/opencv_matchers.hpp>
 
 namespace cairn::report {
 

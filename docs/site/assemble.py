@@ -82,7 +82,7 @@ class Assembly:
         for path in self.files:
             if path.suffix == ".md" and path.parent != Path("docs/site"):
                 self.page(path)
-            elif path.suffix in PICTURES and path.parts[0] in ("docs", "samples"):
+            elif path.suffix in PICTURES and path.parts[0] in ("docs", "data"):
                 (self.pages / path.parent).mkdir(parents=True, exist_ok=True)
                 shutil.copy(self.source / path, self.pages / path)
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "convert.hpp"
 
-#include <io/image_files.hpp>
+#include <cairn/io/image_files.hpp>
 
 namespace cairn::python {
 

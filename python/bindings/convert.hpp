@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
-#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <memory>
 #include <utility>
 #include <vector>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/live/sequence_run.hpp>
+#include <cairn/output/follow_files.hpp>
 #include <map>
 #include <mutex>
 #include <set>
-#include <source/follow_files.hpp>
-#include <source/sequence_run.hpp>
 
 #include "bindings.hpp"
 #include "frame.hpp"

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "frame.hpp"
 
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/io/image_files.hpp>
 #include <cairn/objects/locate.hpp>
+#include <cairn/output/overlay.hpp>
 #include <cairn/pipeline/segmenter.hpp>
-#include <io/disparity_files.hpp>
-#include <io/image_files.hpp>
-#include <io/overlay.hpp>
 #include <limits>
 
 #include "bindings.hpp"

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <io/image_files.hpp>
-#include <io/results.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/output/results.hpp>
 
 #include "values.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cairn/core/nearest.hpp>
 #include <cairn/core/target.hpp>
-#include <io/config_files.hpp>
+#include <cairn/io/config_files.hpp>
 
 #include "bindings.hpp"
 #include "value_class.hpp"

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/io/calibration_files.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <functional>
-#include <io/calibration_files.hpp>
 #include <optional>
 #include <string>
 #include <string_view>

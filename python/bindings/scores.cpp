@@ -7,11 +7,11 @@
 #include <cairn/diagnosis/synchrony.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/output/diagnosis_json.hpp>
+#include <cairn/output/tuning_json.hpp>
 #include <cairn/tuning/tune.hpp>
-#include <io/dataset.hpp>
-#include <io/diagnosis_json.hpp>
-#include <io/disparity_files.hpp>
-#include <io/tuning_json.hpp>
 #include <thread>
 
 #include "bindings.hpp"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/disparity/confidence.hpp>
-#include <cairn/grouping/choose_objects.hpp>
-#include <cairn/grouping/object_hints.hpp>
 #include <cairn/image/gradient.hpp>
 #include <cairn/image/noise.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/refine_objects.hpp>
+#include <cairn/regions/choose_objects.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/grow_statistical.hpp>
+#include <cairn/regions/object_hints.hpp>
+#include <cairn/stereo/confidence.hpp>
 #include <variant>
 
 #include "bindings.hpp"

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/gradient.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cairn/scene/floor_frame.hpp>
+#include <cairn/stereo/gradient.hpp>
 
 #include "value_class.hpp"
 

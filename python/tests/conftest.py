@@ -9,7 +9,7 @@ import pytest
 import cairn
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-SAMPLES = sorted(folder for folder in (SOURCE / "samples").iterdir() if (folder / "left.png").exists())
+SAMPLES = sorted(folder for folder in (SOURCE / "data" / "samples").iterdir() if (folder / "left.png").exists())
 
 
 @pytest.fixture(scope="session")
@@ -47,7 +47,7 @@ def gray_of(rgb):
 
 @pytest.fixture(scope="session")
 def sample():
-    return Sample(SOURCE / "samples" / "four_in_a_row")
+    return Sample(SOURCE / "data" / "samples" / "four_in_a_row")
 
 
 def same(a, b):

@@ -17,7 +17,7 @@ if ! "$python" -m venv --system-site-packages "$scratch/venv" >"$scratch/log" 2>
 fi
 "$scratch/venv/bin/pip" install --no-index "$source_dir"
 cd "$scratch"
-"$scratch/venv/bin/python" - "$source_dir/samples/four_in_a_row" <<'PYTHON'
+"$scratch/venv/bin/python" - "$source_dir/data/samples/four_in_a_row" <<'PYTHON'
 import importlib.metadata
 import pathlib
 import sys

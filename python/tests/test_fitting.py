@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""fitting/: trees as sources and files, reports, the fate of a missed object. Nothing is fitted here."""
+"""lab/: trees as sources and files, reports, the fate of a missed object. Nothing is fitted here."""
 
 import importlib.util
 import pathlib
@@ -80,7 +80,7 @@ def test_numbers_are_formatted():
 
 
 def test_every_kind_of_cues_has_features():
-    names = "\n".join(re.findall(r'"([^"]+)"', (SOURCE / "cairn/grouping/region_features.cpp").read_text()))
+    names = "\n".join(re.findall(r'"([^"]+)"', (SOURCE / "cairn/regions/region_features.cpp").read_text()))
     for cue, words in fit.CUES.items():
         for word in words:
             assert word in names, f"{cue}: {word}"

@@ -12,7 +12,7 @@ import pytest
 import cairn
 from conftest import SOURCE
 
-SEQUENCE = SOURCE / "sequences" / "rolling_ball"
+SEQUENCE = SOURCE / "data" / "sequences" / "rolling_ball"
 if not isinstance(cairn.Follower, type):
     pytest.skip("this cairn was built without sequences", allow_module_level=True)
 

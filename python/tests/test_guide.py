@@ -27,11 +27,11 @@ def test_the_guide_runs(sample, source, capsys):
     found = guide.video([(sample.left, sample.right)] * 2, rig)
     assert found[0] == found[1] and found[0][0][0] == 1
     if isinstance(cairn.Follower, type):
-        found = guide.followed(source / "sequences" / "rolling_ball")
+        found = guide.followed(source / "data" / "sequences" / "rolling_ball")
         assert any(is_moving for _, _, _, is_moving, _ in found) and len({track for _, track, *_ in found}) == 3
         assert guide.fed([(sample.left, sample.right)] * 2, rig).index == 1
     assert guide.stages(sample.left, sample.right, rig).objects
     assert guide.doctor(sample.right, sample.left, rig, [(sample.left, sample.right)] * 2) == 0
     assert capsys.readouterr().out.startswith("broken, cameras swapped: ")
-    tuning, better = guide.tuned(source / "samples", sample.left, sample.right, rig)
+    tuning, better = guide.tuned(source / "data" / "samples", sample.left, sample.right, rig)
     assert capsys.readouterr().out == f"{tuning}\n" and better.config["superpixels.count"] == tuning.config["superpixels.count"]

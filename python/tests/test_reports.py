@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""benchmarks/: tables and plots of docs/accuracy.md and BENCHMARK.md, and the list of ablations."""
+"""lab/: tables and plots of docs/accuracy.md and BENCHMARK.md, and the list of ablations."""
 
 import math
 import pathlib
@@ -12,7 +12,7 @@ from conftest import SOURCE
 import cairn
 
 pytest.importorskip("matplotlib")
-sys.path.insert(0, str(SOURCE / "benchmarks"))
+sys.path.insert(0, str(SOURCE / "lab"))
 import accuracy  # noqa: E402
 import page  # noqa: E402
 import report  # noqa: E402
@@ -73,7 +73,7 @@ def test_a_line_through_exact_points_is_found():
 
 
 def test_a_sample_has_its_scores():
-    frame = accuracy.TrueFrame(pathlib.Path(SOURCE) / "samples" / "four_in_a_row")
+    frame = accuracy.TrueFrame(pathlib.Path(SOURCE) / "data" / "samples" / "four_in_a_row")
     score = accuracy.score(frame, cairn.Config(), False)
     summary = accuracy.Summary([score])
     by_library = cairn.summarise([score.objects])

@@ -20,7 +20,7 @@ SPOILT = {"objects": {"min_area": 10}}
 
 @pytest.fixture(scope="module")
 def frames():
-    return cairn.load_tuning_frames(SOURCE / "samples", truth=True)
+    return cairn.load_tuning_frames(SOURCE / "data" / "samples", truth=True)
 
 
 def quick(frames, **more):
@@ -32,7 +32,7 @@ def quick(frames, **more):
 def test_the_result_equals_that_of_the_command(frames, command, tmp_path):
     tuning = quick(frames, holdout=0.25, seed=3)
     subprocess.run(
-        [command, "tune", SOURCE / "samples", "--truth", "--options", "objects.min_confidence,objects.min_area", "--evaluations", "12",
+        [command, "tune", SOURCE / "data" / "samples", "--truth", "--options", "objects.min_confidence,objects.min_area", "--evaluations", "12",
          "--budget", "10m", "--holdout", "0.25", "--seed", "3", "--set", "objects.min_area=10", "-o", tmp_path / "tuned.yaml",
          "--json", tmp_path / "found.json"], check=True, capture_output=True,
     )

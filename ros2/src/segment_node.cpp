@@ -5,7 +5,7 @@
 #include <message_filters/synchronizer.h>
 
 #include <cairn/ros/from_step.hpp>
-#include <cairn/tracking/follower.hpp>
+#include <cairn/sequence/follower.hpp>
 #include <cairn_ros/conversions.hpp>
 #include <geometry_msgs/msg/transform_stamped.hpp>
 #include <memory>

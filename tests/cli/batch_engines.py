@@ -36,7 +36,7 @@ def needs(*programs):
 
 
 def planned(folder):
-    run(cairn, "batch", "plan", source / "samples", source / "sequences/rolling_ball", "-o", folder / "run")
+    run(cairn, "batch", "plan", source / "data" / "samples", source / "data/sequences/rolling_ball", "-o", folder / "run")
     return folder / "run"
 
 

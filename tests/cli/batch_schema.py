@@ -27,9 +27,9 @@ open_form, closed_form = validator(published), validator({**published, "addition
 
 with tempfile.TemporaryDirectory() as scratch:
     folder = pathlib.Path(scratch)
-    shutil.copytree(source / "samples/four_in_a_row", folder / "in/good")
-    shutil.copytree(source / "samples/four_in_a_row", folder / "in/unmeasured", ignore=lambda *_: ["calib.txt"])
-    shutil.copytree(source / "samples/four_in_a_row", folder / "in/broken")
+    shutil.copytree(source / "data/samples/four_in_a_row", folder / "in/good")
+    shutil.copytree(source / "data/samples/four_in_a_row", folder / "in/unmeasured", ignore=lambda *_: ["calib.txt"])
+    shutil.copytree(source / "data/samples/four_in_a_row", folder / "in/broken")
     (folder / "in/broken/right.png").write_bytes(b"no image")
     for words in ("plan in -o run", "work run", "merge run -o rows.jsonl"):
         subprocess.run([cairn, "batch", *words.split()], cwd=folder, check=True, capture_output=True)

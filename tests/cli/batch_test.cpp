@@ -5,9 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cairn/io/sha256.hpp>
 #include <chrono>
 #include <csignal>
-#include <io/sha256.hpp>
 #include <nlohmann/json.hpp>
 #include <thread>
 

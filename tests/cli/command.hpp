@@ -10,9 +10,9 @@
 
 #include <algorithm>
 #include <cairn/core/image.hpp>
+#include <cairn/io/image_files.hpp>
 #include <filesystem>
 #include <fstream>
-#include <io/image_files.hpp>
 #include <iterator>
 #include <random>
 #include <set>

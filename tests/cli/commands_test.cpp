@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <io/disparity_files.hpp>
+#include <cairn/io/disparity_files.hpp>
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/io/rle.hpp>
+#include <cairn/sequence/pose.hpp>
 #include <cmath>
 #include <functional>
-#include <io/rle.hpp>
 #include <nlohmann/json.hpp>
-#include <tracking/pose.hpp>
 
 #include "command.hpp"
 

@@ -96,8 +96,8 @@ class Player(PageTest):
         root = pathlib.Path(cls.folder.name)
         source = root / "drive"
         for k in range(FRAMES - 1):
-            shutil.copytree(SOURCE / "samples" / "four_in_a_row", source / f"{k:03}")
-        shutil.copytree(SOURCE / "samples" / "four_in_a_row", source / HOSTILE)
+            shutil.copytree(SOURCE / "data" / "samples" / "four_in_a_row", source / f"{k:03}")
+        shutil.copytree(SOURCE / "data" / "samples" / "four_in_a_row", source / HOSTILE)
         cairn("follow", source, "--rate", "10", "--html", "-o", root / "result")
         cls.plain = root / "result" / "follow.html"
         page = cls.plain.read_text()

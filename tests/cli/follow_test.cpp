@@ -21,7 +21,7 @@ class Follow : public CommandTest {
       const fs::path frame = at(folder + "/" + std::to_string(i));
       fs::create_directories(frame);
       for (const char* file : {"left.png", "right.png", "calib.txt"})
-        fs::copy_file(fs::path(CAIRN_SOURCE_DIR) / "samples/four_in_a_row" / file, frame / file);
+        fs::copy_file(fs::path(CAIRN_SOURCE_DIR) / "data/samples/four_in_a_row" / file, frame / file);
     }
   }
   static std::vector<Json> lines_of(const fs::path& path) {
@@ -219,7 +219,7 @@ TEST_F(Follow, AScanJudgesTheDisparities) {
 
 TEST_F(Follow, WatchingReportsABetterOptionAndChangesNothing) {
   standing(30);
-  // As in tests/unit/control_test.cpp: one object of the scene is found only if the minimum area is halved.
+  // As in tests/unit/sequence/control_test.cpp: one object of the scene is found only if the minimum area is halved.
   const std::vector<std::string> off{"follow", path("in"), "--set", "objects.min_area=4"};
   std::vector<std::string> usual = off;
   usual.insert(usual.end(), {"-o", path("off")});

@@ -46,7 +46,7 @@ function within(what, run) {
 }
 
 async function start() {
-  const run = spawn(cairn, ['live', path.join(sources, 'sequences/rolling_ball'), '--view', '127.0.0.1:0', '--tunable',
+  const run = spawn(cairn, ['live', path.join(sources, 'data/sequences/rolling_ball'), '--view', '127.0.0.1:0', '--tunable',
                             '--pace', '0.05'], {stdio: ['ignore', 'ignore', 'pipe']});
   let text = '';
   const address = await within('cairn live', (resolve, reject) => {

@@ -52,7 +52,7 @@ class Live:
 
 def long_sequence(folder):
     """The ball rolls back and forth."""
-    frames = sorted((SOURCE / "sequences" / "rolling_ball").glob("0*"))
+    frames = sorted((SOURCE / "data" / "sequences" / "rolling_ball").glob("0*"))
     there_and_back = frames + frames[-2:0:-1]
     folder.mkdir()
     for k in range(FRAMES):

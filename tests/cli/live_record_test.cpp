@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 class LiveRecord : public CommandTest {
  protected:
   [[nodiscard]] static std::string sequence() {
-    return (fs::path(CAIRN_SOURCE_DIR) / "sequences" / "rolling_ball").string();
+    return (fs::path(CAIRN_SOURCE_DIR) / "data" / "sequences" / "rolling_ball").string();
   }
   /// For every frame of the sequence, or of `source`.
   Outcome record(const std::vector<std::string>& more = {}, const std::string& source = sequence()) const {

@@ -12,7 +12,7 @@ import time
 
 command, listener, source = sys.argv[1:4]
 frames = int(sys.argv[4]) if len(sys.argv) > 4 else 300
-sample = pathlib.Path(sys.argv[5] if len(sys.argv) > 5 else f"{source}/samples/four_in_a_row").resolve()
+sample = pathlib.Path(sys.argv[5] if len(sys.argv) > 5 else f"{source}/data/samples/four_in_a_row").resolve()
 name = f"/t{os.getpid()}"
 environment = dict(os.environ, ROS_DOMAIN_ID=str(1 + os.getpid() % 100), ROS_LOCALHOST_ONLY="1")
 for variable in ("CYCLONEDDS_URI", "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"):

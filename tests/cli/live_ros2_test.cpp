@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <atomic>
-#include <io/calibration_files.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/ros/dds/participant.hpp>
+#include <cairn/ros/from_step.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <ros/from_step.hpp>
-#include <source/dds/participant.hpp>
 #include <sstream>
 #include <thread>
 
@@ -23,7 +23,7 @@ class LiveRos2 : public CommandTest {
  protected:
   static void SetUpTestSuite() { enter_own_domain(); }
 
-  static std::string sequence() { return CAIRN_SOURCE_DIR "/sequences/rolling_ball"; }
+  static std::string sequence() { return CAIRN_SOURCE_DIR "/data/sequences/rolling_ball"; }
   static std::map<std::int64_t, Json> frames_of(const std::string& lines) {
     std::map<std::int64_t, Json> frames;
     std::istringstream text(lines);
@@ -93,7 +93,7 @@ class Camera {
     is_over_ = true;
     thread_.join();
   }
-  static fs::path sample() { return fs::path(CAIRN_SOURCE_DIR) / "samples/four_in_a_row"; }
+  static fs::path sample() { return fs::path(CAIRN_SOURCE_DIR) / "data/samples/four_in_a_row"; }
 
  private:
   void work() {

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "command.hpp"
 
-/// cairn live --view: its output and refusals. (tests/unit/view_server_test.cpp tests the server.)
+/// cairn live --view: its output and refusals. (tests/unit/live/view_server_test.cpp tests the server.)
 namespace cairn::command {
 namespace {
 
 class LiveView : public CommandTest {
  protected:
-  const std::string source_ = CAIRN_SOURCE_DIR "/sequences/rolling_ball";
+  const std::string source_ = CAIRN_SOURCE_DIR "/data/sequences/rolling_ball";
 };
 
 TEST_F(LiveView, PrintsItsAddress) {

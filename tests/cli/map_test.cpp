@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <landmarks/map_file.hpp>
+#include <cairn/sequence/map_file.hpp>
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"

@@ -44,7 +44,7 @@ def written(*arguments):
 
 
 def documents():
-    samples = sorted(path for path in (source / "samples").iterdir() if path.is_dir())
+    samples = sorted(path for path in (source / "data" / "samples").iterdir() if path.is_dir())
     assert samples, "no samples"
     for folder in samples:
         for preset in ("default", "paper"):

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // --html, --ply and --ply-objects of the commands: locations of the files, and refusals. For their content
-// see unit/html_page_test.cpp, unit/point_cloud_test.cpp, cli/page_in_browser.py.
+// see unit/output/html_page_test.cpp, unit/io/point_cloud_test.cpp, cli/page_in_browser.py.
 #include <gtest/gtest.h>
 
+#include <cairn/output/results.hpp>
 #include <cstring>
-#include <io/results.hpp>
 #include <map>
 #include <support/samples.hpp>
 

@@ -32,7 +32,7 @@ class Page(PageTest):
         root = pathlib.Path(cls.folder.name)
         cls.frames, cls.results = root / "frames", root / "results"
         for sample in ("dim_light", "four_in_a_row", "overlap"):
-            shutil.copytree(SOURCE / "samples" / sample, cls.frames / sample)
+            shutil.copytree(SOURCE / "data" / "samples" / sample, cls.frames / sample)
         (cls.frames / "overlap").rename(cls.frames / HOSTILE)
         cls.names = sorted(path.name for path in cls.frames.iterdir())
         # One check more than in the preset, so that some pixels have two reasons.
@@ -221,7 +221,7 @@ class Page(PageTest):
         folder, out = self.results.parent / "pair", self.results.parent / "uncalibrated"
         folder.mkdir()
         for side in ("left", "right"):
-            shutil.copy(SOURCE / "samples" / "four_in_a_row" / f"{side}.png", folder)
+            shutil.copy(SOURCE / "data" / "samples" / "four_in_a_row" / f"{side}.png", folder)
         cairn("segment", folder, "--html", "-o", out)
         self.pages = {"segment": out / "segment.html"}
         self.open("segment")

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/geometry.hpp>
-#include <io/calibration_files.hpp>
-#include <io/raw_calibration.hpp>
-#include <io/stereo_calibration.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/raw_calibration.hpp>
+#include <cairn/io/stereo_calibration.hpp>
 #include <support/drawn_boards.hpp>
 
 #include "command.hpp"

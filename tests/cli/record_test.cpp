@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <io/calibration_files.hpp>
+#include <cairn/io/calibration_files.hpp>
 
 #include "command.hpp"
 

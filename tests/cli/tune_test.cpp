@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/io/config_files.hpp>
+#include <cairn/io/disparity_files.hpp>
 #include <cstdlib>
-#include <io/config_files.hpp>
-#include <io/disparity_files.hpp>
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 
 class Tune : public CommandTest {
  protected:
-  static std::string samples() { return std::string(CAIRN_SOURCE_DIR) + "/samples"; }
+  static std::string samples() { return std::string(CAIRN_SOURCE_DIR) + "/data/samples"; }
   /// `tune FOLDER … --budget 10m -o tuned.yaml --json found.json`: the number of evaluations ends it,
   /// independent of the machine's speed.
   [[nodiscard]] Outcome tune(const std::string& folder, const std::vector<std::string>& more) const {

@@ -7,8 +7,8 @@
 #include <cairn/io/dataset.hpp>
 #include <cairn/io/disparity_files.hpp>
 #include <cairn/io/image_files.hpp>
-#include <cairn/io/results.hpp>
-#include <cairn/page/html_page.hpp>
+#include <cairn/output/results.hpp>
+#include <cairn/output/web/html_page.hpp>
 #include <cstdio>
 #include <filesystem>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/landmarks/map_file.hpp>
-#include <cairn/source/follow_files.hpp>
-#include <cairn/source/sequence.hpp>
-#include <cairn/tracking/follower.hpp>
+#include <cairn/input/sequence.hpp>
+#include <cairn/output/follow_files.hpp>
+#include <cairn/sequence/follower.hpp>
+#include <cairn/sequence/map_file.hpp>
 #include <cstdio>
 #include <filesystem>
 

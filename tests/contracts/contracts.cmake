@@ -1,17 +1,15 @@
 # Promises to users of the project. Included by tests/CMakeLists.txt.
 
 # Each public header compiles alone, and twice: one generated source per header.
-file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
-  ${PROJECT_SOURCE_DIR}/cairn/*.hpp ${PROJECT_SOURCE_DIR}/io/*.hpp ${PROJECT_SOURCE_DIR}/page/*.hpp
-  ${PROJECT_SOURCE_DIR}/tracking/*.hpp ${PROJECT_SOURCE_DIR}/landmarks/*.hpp ${PROJECT_SOURCE_DIR}/source/*.hpp
-  ${PROJECT_SOURCE_DIR}/ros/*.hpp ${PROJECT_SOURCE_DIR}/live/*.hpp)
+file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/cairn/*.hpp)
+list(FILTER headers EXCLUDE REGEX "^cairn/(batch|timing)/")  # not installed
 # A header that a kernel's source includes once per instruction set is not a header in this sense.
 list(FILTER headers EXCLUDE REGEX "-inl\\.hpp$")
 if(NOT CAIRN_IO)
-  list(FILTER headers EXCLUDE REGEX "^(io|page)/|^cairn/opencv\\.hpp$")
+  list(FILTER headers EXCLUDE REGEX "^cairn/(io|output)/|^cairn/opencv\\.hpp$")
 endif()
 if(NOT CAIRN_HAS_TRACKING)
-  list(FILTER headers EXCLUDE REGEX "^(tracking|landmarks|source|ros|live)/")
+  list(FILTER headers EXCLUDE REGEX "^cairn/(sequence|input|ros|live)/|^cairn/output/(follow|track|trajectory)_")
 endif()
 set(alone_sources)
 foreach(header IN LISTS headers)
@@ -40,7 +38,6 @@ endfunction()
 set(here ${CMAKE_CURRENT_SOURCE_DIR}/contracts)
 cairn_contract(mistakes_do_not_compile ${here}/must_not_compile.sh ${CMAKE_CXX_COMPILER} ${PROJECT_SOURCE_DIR})
 cairn_contract(headers_define_no_foreign_macro ${here}/no_foreign_macros.sh ${CMAKE_CXX_COMPILER} ${PROJECT_SOURCE_DIR})
-cairn_contract(io_headers_hold_where_they_are_installed ${here}/io_headers_move.sh ${PROJECT_SOURCE_DIR})
 cairn_contract(installed_headers_are_complete ${here}/headers_are_complete.sh ${CMAKE_COMMAND} ${PROJECT_BINARY_DIR})
 cairn_contract(no_include_runs_upwards ${here}/no_upward_includes.sh ${PROJECT_SOURCE_DIR})
 cairn_contract(links_of_the_pages_exist ${here}/links_exist.sh ${PROJECT_SOURCE_DIR})
@@ -77,7 +74,7 @@ if(CAIRN_IO)
     set_tests_properties(contracts/site_builds_and_its_links_lead_somewhere PROPERTIES
       LABELS "contracts;slow" SKIP_RETURN_CODE 77)
   endif()
-  cairn_contract(instruction_counts ${PROJECT_SOURCE_DIR}/benchmarks/instruction_counts.sh --check ${PROJECT_BINARY_DIR})
+  cairn_contract(instruction_counts ${PROJECT_SOURCE_DIR}/lab/instruction_counts.sh --check ${PROJECT_BINARY_DIR})
   set_tests_properties(contracts/instruction_counts PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 # Release builds only, since they are shipped.
@@ -95,11 +92,11 @@ if(CAIRN_HARDENING AND CAIRN_IO)
   set_tests_properties(contracts/binaries_are_hardened PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 if(TARGET 01_objects_from_a_pair)
-  cairn_contract(example_01_runs 01_objects_from_a_pair ${PROJECT_SOURCE_DIR}/samples/four_in_a_row)
-  cairn_contract(example_02_runs 02_stage_by_stage ${PROJECT_SOURCE_DIR}/samples/glossy_floor)
-  cairn_contract(example_03_runs 03_your_own_check ${PROJECT_SOURCE_DIR}/samples/dim_light)
+  cairn_contract(example_01_runs 01_objects_from_a_pair ${PROJECT_SOURCE_DIR}/data/samples/four_in_a_row)
+  cairn_contract(example_02_runs 02_stage_by_stage ${PROJECT_SOURCE_DIR}/data/samples/glossy_floor)
+  cairn_contract(example_03_runs 03_your_own_check ${PROJECT_SOURCE_DIR}/data/samples/dim_light)
 endif()
 if(TARGET 05_follow_a_sequence)
-  cairn_contract(example_05_runs 05_follow_a_sequence ${PROJECT_SOURCE_DIR}/sequences/rolling_ball)
+  cairn_contract(example_05_runs 05_follow_a_sequence ${PROJECT_SOURCE_DIR}/data/sequences/rolling_ball)
   set_tests_properties(contracts/example_05_runs PROPERTIES PASS_REGULAR_EXPRESSION "005: camera at.*track [0-9]+ at [^\n]*, moving")
 endif()

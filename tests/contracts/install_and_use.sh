@@ -35,11 +35,11 @@ run_programs() {
   local program ran=0
   for program in core files matrices; do
     [[ -x $scratch/build/$program ]] || continue
-    "$scratch/build/$program" "$source_dir/samples/four_in_a_row" "$scratch/result"
+    "$scratch/build/$program" "$source_dir/data/samples/four_in_a_row" "$scratch/result"
     ran=$((ran + 1))
   done
   if [[ -x $scratch/build/sequences ]]; then
-    "$scratch/build/sequences" "$source_dir/sequences/rolling_ball" "$scratch/map.db"
+    "$scratch/build/sequences" "$source_dir/data/sequences/rolling_ball" "$scratch/map.db"
     ran=$((ran + 1))
   fi
   echo "$ran programs"

@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
 # no_shared_temporaries.sh SOURCE_DIR: checks that installed code writes only where requested. A temporary file is
-# next to its final name (io/atomic_file.hpp), never in a folder that others may write to.
+# next to its final name (cairn/io/atomic_file.hpp), never in a folder that others may write to.
 set -euo pipefail
 cd "$1"
 readonly installed=(cairn io page tracking landmarks ros source live batch timing cli python/bindings python/cairn)

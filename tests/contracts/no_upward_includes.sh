@@ -7,11 +7,11 @@ set -euo pipefail
 cd "$1"
 
 # From the lowest to the highest; `cairn` means files directly in that folder.
-ranks='cairn/core cairn/image cairn/matching cairn/disparity cairn/regions cairn/scene cairn/grouping cairn/objects
-  cairn/pipeline cairn/evaluation cairn/diagnosis cairn/tuning cairn tracking io page landmarks ros source live timing batch cli python
-  examples benchmarks tests'
+ranks='cairn/core cairn/image cairn/stereo cairn/scene cairn/regions cairn/objects cairn/pipeline cairn/evaluation
+  cairn/diagnosis cairn/tuning cairn cairn/io cairn/sequence cairn/ros cairn/output cairn/input cairn/live cairn/timing
+  cairn/batch cli python examples lab tests'
 
-find cairn tracking io page landmarks ros source live timing batch cli python examples benchmarks tests \( -name '*.?pp' -o -name '*.in' \) 2>/dev/null | sort |
+find cairn cli python examples lab tests \( -name '*.?pp' -o -name '*.in' \) 2>/dev/null | sort |
   xargs awk -v ranks="$ranks" '
     BEGIN {
       count = split(ranks, listed)
@@ -25,9 +25,7 @@ find cairn tracking io page landmarks ros source live timing batch cli python ex
     match($0, /^ *#(include|define CAIRN_[A-Z_]+) [<"][^>"]+[>"]/) {
       split($0, quoted, /[<>"]/)
       from = folder_of(FILENAME)
-      sub("^(\\.\\./)+", "", quoted[2])  # relative to the parent folder, as installed
       to = folder_of(quoted[2])
-      if (to ~ "^cairn/(io|page|tracking|source|landmarks|ros|live)$") sub("cairn/", "", to)  # as installed
       if (to !~ "^cairn(/|$)" && !(to in rank)) next  # not ours, or in the same folder
       if (!(from in rank) || !(to in rank)) {
         printf "%s:%d: a folder without a rank: %s includes %s\n", FILENAME, FNR, from, to

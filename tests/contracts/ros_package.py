@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""ros_package.py SOURCE_DIR: checks that packaging/ros2/cairn_ros is a valid ROS package, and that it depends on
+"""ros_package.py SOURCE_DIR: checks that ros2 is a valid ROS package, and that it depends on
 everything that its sources include and its CMakeLists.txt finds. Exit code 77 (skipped) without
 python3-catkin-pkg."""
 import pathlib
@@ -13,7 +13,7 @@ except ImportError:
     print("skipped: no python3-catkin-pkg")
     sys.exit(77)
 
-folder = pathlib.Path(sys.argv[1]) / "packaging/ros2/cairn_ros"
+folder = pathlib.Path(sys.argv[1]) / "ros2"
 warnings = []
 package = parse_package(str(folder / "package.xml"), warnings=warnings)
 package.validate(warnings=warnings)

@@ -76,11 +76,11 @@ def raw_scene(folder):
 
 def scene(source, folder):
     for name in ("left.png", "right.png", "calib.txt"):
-        shutil.copy(source / "samples/four_in_a_row" / name, folder)
+        shutil.copy(source / "data/samples/four_in_a_row" / name, folder)
     for name in ("frames", "truth"):
-        shutil.copytree(source / "samples", folder / name)
-    (folder / "samples").symlink_to(source / "samples")
-    shutil.copytree(source / "sequences/rolling_ball", folder / "sequence")
+        shutil.copytree(source / "data" / "samples", folder / name)
+    (folder / "data").symlink_to(source / "data")
+    shutil.copytree(source / "data/sequences/rolling_ball", folder / "sequence")
 
 
 def failure(block, run):

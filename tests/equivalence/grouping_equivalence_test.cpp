@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cairn/core/target.hpp>
-#include <cairn/grouping/object_hints.hpp>
+#include <cairn/regions/object_hints.hpp>
 #include <cmath>
 #include <limits>
 #include <map>

@@ -4,8 +4,8 @@
 
 #include <cairn/core/target.hpp>
 #include <cairn/image/prefilter.hpp>
-#include <cairn/matching/match.hpp>
-#include <cairn/matching/subpixel.hpp>
+#include <cairn/stereo/match.hpp>
+#include <cairn/stereo/subpixel.hpp>
 #include <random>
 #include <string>
 #include <utility>

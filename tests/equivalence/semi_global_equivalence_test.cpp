@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/target.hpp>
-#include <cairn/matching/semi_global.hpp>
+#include <cairn/stereo/semi_global.hpp>
 #include <random>
 #include <vector>
 

@@ -9,10 +9,10 @@
 #include <cairn/cairn.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/io/disparity_files.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <io/disparity_files.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <support/samples.hpp>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
 #include <string>
 #include <vector>
 

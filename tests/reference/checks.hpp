@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/disparity_map.hpp>
-#include <cairn/disparity/left_right.hpp>
-#include <cairn/disparity/speckle.hpp>
-#include <cairn/disparity/texture.hpp>
 #include <cairn/scene/ground_plane.hpp>
+#include <cairn/stereo/disparity_map.hpp>
+#include <cairn/stereo/left_right.hpp>
+#include <cairn/stereo/speckle.hpp>
+#include <cairn/stereo/texture.hpp>
 #include <vector>
 
 #include "pixel_checks.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <cairn/disparity/confidence.hpp>
+#include <cairn/stereo/confidence.hpp>
 
 namespace cairn::reference {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "reference/epipolar_correction.hpp"
+#include "epipolar_correction.hpp"
 
 #include <algorithm>
 #include <cmath>

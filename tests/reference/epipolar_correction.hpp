@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/matching/epipolar_correction.hpp>
+#include <cairn/stereo/epipolar_correction.hpp>
 
 namespace cairn::reference {
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/grouping/evidence.hpp>
 #include <cairn/image/gradient.hpp>
+#include <cairn/regions/evidence.hpp>
 #include <cstdint>
 
 /// The slow twins of texture, noise and contrast: each pixel by its definition alone.

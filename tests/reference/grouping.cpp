@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "reference/grouping.hpp"
+#include "grouping.hpp"
 
 #include <algorithm>
-#include <cairn/grouping/object_hints.hpp>
+#include <cairn/regions/object_hints.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -11,8 +11,8 @@
 #include <tuple>
 #include <utility>
 
-#include "reference/evidence.hpp"
-#include "reference/regions.hpp"
+#include "evidence.hpp"
+#include "regions.hpp"
 
 namespace cairn::reference {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/grouping/choose_objects.hpp>
-#include <cairn/grouping/merge_tree.hpp>
-#include <cairn/grouping/region_cues.hpp>
-#include <cairn/grouping/superpixels.hpp>
+#include <cairn/regions/choose_objects.hpp>
+#include <cairn/regions/merge_tree.hpp>
+#include <cairn/regions/region_cues.hpp>
+#include <cairn/regions/superpixels.hpp>
 #include <set>
 
 /// The slow twins from superpixels to objects: all quantities are counted again from the pixels, by

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "reference/match.hpp"
+#include "match.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cairn/matching/pixel_math.hpp>
+#include <cairn/stereo/pixel_math.hpp>
 #include <cstdlib>
 #include <limits>
 #include <utility>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/matching/match.hpp>
-#include <cairn/matching/subpixel.hpp>
+#include <cairn/stereo/match.hpp>
+#include <cairn/stereo/subpixel.hpp>
 
 namespace cairn::reference {
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/grouping/object_hints.hpp>
+#include <cairn/regions/object_hints.hpp>
 #include <cstdint>
 #include <span>
 #include <vector>

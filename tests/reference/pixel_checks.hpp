@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/flatness.hpp>
-#include <cairn/disparity/uniqueness.hpp>
+#include <cairn/stereo/flatness.hpp>
+#include <cairn/stereo/uniqueness.hpp>
 #include <vector>
 
 /// The slow twins of the checks that judge a pixel by its own costs, and the list of them for the equivalence

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/disparity/gradient.hpp>
 #include <cairn/image/gradient.hpp>
 #include <cairn/objects/fuse.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>
 #include <cairn/regions/watershed.hpp>
+#include <cairn/stereo/gradient.hpp>
 
 /// The slow twins of regions/ and objects/; the fast functions must give the same bits. Written for clarity,
 /// with sets, maps and searches over the whole image; only for small images.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "reference/semi_global.hpp"
+#include "semi_global.hpp"
 
 #include <algorithm>
 #include <bit>

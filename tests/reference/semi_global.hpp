@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/matching/semi_global.hpp>
+#include <cairn/stereo/semi_global.hpp>
 
 namespace cairn::reference {
 

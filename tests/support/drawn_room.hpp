@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
-#include <support/true_tracks.hpp>
+#include <true_tracks.hpp>
 #include <vector>
 
 /// A room with upright cylinders on a floor, seen by a stereo camera: disparities and ids by ray casting.

@@ -5,6 +5,7 @@
 #include <linux/videodev2.h>
 
 #include <algorithm>
+#include <cairn/input/camera/v4l2_ops.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
@@ -13,7 +14,6 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <source/camera/v4l2_ops.hpp>
 #include <string>
 #include <thread>
 #include <vector>

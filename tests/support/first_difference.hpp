@@ -5,7 +5,7 @@
 #include <array>
 #include <bit>
 #include <cairn/core/image.hpp>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
 #include <cstddef>
 #include <string>
 

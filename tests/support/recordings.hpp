@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/ros/from_step.hpp>
+#include <cairn/ros/mcap.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
-#include <ros/from_step.hpp>
-#include <ros/mcap.hpp>
 #include <string>
 
 /// Recordings for tests.

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cairn/grouping/region_features.hpp>
+#include <cairn/regions/region_features.hpp>
 #include <limits>
 #include <utility>
 #include <vector>
 
-#include "support/grids.hpp"
+#include "grids.hpp"
 
 /// An image of regions drawn as text in a test's source, with all per-pixel inputs.
 namespace cairn::support {

@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cairn/cairn.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/image_files.hpp>
 #include <filesystem>
-#include <io/calibration_files.hpp>
-#include <io/image_files.hpp>
 #include <string>
 
 namespace cairn::samples {
@@ -14,10 +14,10 @@ namespace cairn::samples {
 inline constexpr std::array kNames{"dim_light", "four_in_a_row", "glossy_floor", "overlap"};
 
 inline std::filesystem::path folder(const std::string& name) {
-  return std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / name;
+  return std::filesystem::path(CAIRN_SOURCE_DIR) / "data" / "samples" / name;
 }
 
-/// A pair of samples/ with its calibration.
+/// A pair of data/samples/ with its calibration.
 struct Sample {
   io::PicturePair images;
   io::Calibration calibration;

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cairn/core/stereo_pair.hpp>
-#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/sequence/pose.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <cmath>
 #include <limits>
-#include <tracking/pose.hpp>
 
 /// A scene of textured planes, rendered from any pose with exact disparities.
 namespace cairn::room {

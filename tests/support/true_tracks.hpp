@@ -3,8 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cairn/sequence/landmarks.hpp>
 #include <cmath>
-#include <landmarks/landmarks.hpp>
 #include <map>
 #include <random>
 #include <vector>

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cairn/io/sha256.hpp>
+#include <cairn/ros/messages.hpp>
 #include <cstdint>
-#include <io/sha256.hpp>
 #include <map>
-#include <ros/messages.hpp>
 #include <string>
 #include <type_traits>
 #include <vector>

@@ -6,6 +6,12 @@
 #include <unistd.h>
 
 #include <cairn/core/error.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/io/point_cloud.hpp>
+#include <cairn/io/raster.hpp>
+#include <cairn/output/results.hpp>
+#include <cairn/output/web/html_page.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <csignal>
 #include <cstdio>
@@ -13,13 +19,7 @@
 #include <exception>
 #include <functional>
 #include <fuzz/targets.hpp>
-#include <io/config_files.hpp>
-#include <io/disparity_files.hpp>
-#include <io/point_cloud.hpp>
-#include <io/raster.hpp>
-#include <io/results.hpp>
 #include <new>
-#include <page/html_page.hpp>
 #include <random>
 #include <set>
 #include <support/failing_allocations.hpp>

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "../../io/image_files.hpp"
-#include "../../tracking/pose.hpp"
+#include <cairn/io/image_files.hpp>
+#include <cairn/sequence/pose.hpp>
 
 /// The interface to a device or a pipeline; reconnection and image handling are common to all. Internal to
 /// source.

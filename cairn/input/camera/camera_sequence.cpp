@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "camera_sequence.hpp"
+#include <cairn/input/camera/camera_sequence.hpp>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/io/frame_names.hpp>
 #include <condition_variable>
 #include <cstdio>
-#include <io/frame_names.hpp>
 #include <mutex>
 #include <utility>
 
-#include "../frame_list.hpp"
-#include "../frame_watch.hpp"
-#include "../names_and_numbers.hpp"
-#include "stamp_pairer.hpp"
+#include <cairn/input/camera/stamp_pairer.hpp>
+#include <cairn/input/frame_list.hpp>
+#include <cairn/input/frame_watch.hpp>
+#include <cairn/io/names_and_numbers.hpp>
 
 namespace cairn::io {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "../sequence.hpp"
-#include "camera.hpp"
-#include "kept_camera.hpp"
+#include <cairn/input/camera/camera.hpp>
+#include <cairn/input/camera/kept_camera.hpp>
+#include <cairn/input/sequence.hpp>
 
 namespace cairn::io {
 

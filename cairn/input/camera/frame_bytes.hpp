@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "../../io/image_files.hpp"
+#include <cairn/io/image_files.hpp>
 
 /// Images in the memory layout of cameras, and their conversion. Internal to source.
 namespace cairn::io {

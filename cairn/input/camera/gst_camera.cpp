@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "gst_camera.hpp"
+#include <cairn/input/camera/gst_camera.hpp>
 
 #include <gst/app/gstappsink.h>
 #include <gst/gst.h>
@@ -13,7 +13,7 @@
 #include <optional>
 #include <utility>
 
-#include "without_password.hpp"
+#include <cairn/input/camera/without_password.hpp>
 
 namespace cairn::io {
 namespace {

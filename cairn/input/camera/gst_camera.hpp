@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "camera.hpp"
-#include "frame_bytes.hpp"
+#include <cairn/input/camera/camera.hpp>
+#include <cairn/input/camera/frame_bytes.hpp>
 
 /// GStreamer pipelines, through a module (camera/gst_module.cpp). Internal to source.
 namespace cairn::io {

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "camera.hpp"
+#include <cairn/input/camera/camera.hpp>
 
 namespace cairn::io {
 

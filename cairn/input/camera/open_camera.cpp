@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "open_camera.hpp"
+#include <cairn/input/camera/open_camera.hpp>
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "camera_sequence.hpp"
-#include "gst_camera.hpp"
-#include "without_password.hpp"
+#include <cairn/input/camera/camera_sequence.hpp>
+#include <cairn/input/camera/gst_camera.hpp>
+#include <cairn/input/camera/without_password.hpp>
 
 namespace cairn::io {
 namespace {

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "../sequence.hpp"
-#include "kept_camera.hpp"
-#include "v4l2_camera.hpp"
+#include <cairn/input/camera/kept_camera.hpp>
+#include <cairn/input/camera/v4l2_camera.hpp>
+#include <cairn/input/sequence.hpp>
 
 /// Camera sources by name. (docs/cameras.md) Internal to source.
 namespace cairn::io {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "gst_camera.hpp"
+#include <cairn/input/camera/gst_camera.hpp>
 
 /// Linked directly, without a module: sanitizers need one program.
 namespace cairn::io {

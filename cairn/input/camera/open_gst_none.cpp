@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
 
-#include "gst_camera.hpp"
+#include <cairn/input/camera/gst_camera.hpp>
 
 namespace cairn::io {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "../stamp_pairing.hpp"
-#include "camera.hpp"
+#include <cairn/input/camera/camera.hpp>
+#include <cairn/sequence/stamp_pairing.hpp>
 
 namespace cairn::io {
 

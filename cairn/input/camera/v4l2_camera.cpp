@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "v4l2_camera.hpp"
+#include <cairn/input/camera/v4l2_camera.hpp>
 
 #include <linux/videodev2.h>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/raster.hpp>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <io/raster.hpp>
 #include <span>
 #include <string_view>
 #include <utility>

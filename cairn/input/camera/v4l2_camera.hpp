@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "camera.hpp"
-#include "frame_bytes.hpp"
-#include "v4l2_ops.hpp"
+#include <cairn/input/camera/camera.hpp>
+#include <cairn/input/camera/frame_bytes.hpp>
+#include <cairn/input/camera/v4l2_ops.hpp>
 
 namespace cairn::io {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "v4l2_ops.hpp"
+#include <cairn/input/camera/v4l2_ops.hpp>
 
 #include <fcntl.h>
 #include <poll.h>

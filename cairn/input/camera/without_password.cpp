@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "without_password.hpp"
+#include <cairn/input/camera/without_password.hpp>
 
 namespace cairn::io {
 

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "ros2_sequence.hpp"
+#include <cairn/input/dds/ros2_sequence.hpp>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/io/frame_names.hpp>
 #include <cstdio>
-#include <io/frame_names.hpp>
 #include <mutex>
 
-#include "../../ros/from_step.hpp"
-#include "../frame_list.hpp"
-#include "../frame_watch.hpp"
-#include "../names_and_numbers.hpp"
-#include "../ros_pictures.hpp"
-#include "../stamp_pairing.hpp"
-#include "participant.hpp"
+#include <cairn/input/frame_list.hpp>
+#include <cairn/input/frame_watch.hpp>
+#include <cairn/input/ros_pictures.hpp>
+#include <cairn/io/names_and_numbers.hpp>
+#include <cairn/ros/dds/participant.hpp>
+#include <cairn/ros/from_step.hpp>
+#include <cairn/sequence/stamp_pairing.hpp>
 
 namespace cairn::dds {
 namespace {

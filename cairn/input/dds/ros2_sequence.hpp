@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "../sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 namespace cairn::dds {
 

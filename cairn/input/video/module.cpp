@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "module.hpp"
+#include <cairn/input/video/module.hpp>
 
-#include "opencv_video.hpp"
+#include <cairn/input/video/opencv_video.hpp>
 
 extern "C" {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "../sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 /// The interface between the library and its video module. Both belong to one build.
 namespace cairn::io {

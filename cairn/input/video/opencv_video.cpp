@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "opencv_video.hpp"
+#include <cairn/input/video/opencv_video.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/input/frame_list.hpp>
+#include <cairn/input/frame_watch.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/frame_names.hpp>
+#include <cairn/io/names_and_numbers.hpp>
+#include <cairn/sequence/stamp_pairing.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <io/dataset.hpp>
-#include <io/frame_names.hpp>
 #include <opencv2/videoio.hpp>
 #include <opencv2/videoio/registry.hpp>
-#include <source/frame_list.hpp>
-#include <source/frame_watch.hpp>
-#include <source/names_and_numbers.hpp>
-#include <source/stamp_pairing.hpp>
 #include <system_error>
 
 namespace cairn::io {

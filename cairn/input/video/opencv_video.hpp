@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "../sequence.hpp"
+#include <cairn/input/sequence.hpp>
 
 /// Videos through OpenCV's videoio.
 namespace cairn::io {

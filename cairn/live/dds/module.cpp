@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "module.hpp"
+#include <cairn/live/dds/module.hpp>
 
-#include "../../source/dds/ros2_sequence.hpp"
-#include "ros2_sink.hpp"
+#include <cairn/input/dds/ros2_sequence.hpp>
+#include <cairn/live/dds/ros2_sink.hpp>
 
 extern "C" {
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include "../../source/dds/module.hpp"
-#include "../ros2.hpp"
+#include <cairn/input/dds/module.hpp>
+#include <cairn/live/ros2.hpp>
 
 namespace cairn::dds {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "ros2_sink.hpp"
+#include <cairn/live/dds/ros2_sink.hpp>
 
 #include <atomic>
 #include <cairn/core/error.hpp>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "../../source/dds/participant.hpp"
-#include "../newest_slot.hpp"
+#include <cairn/live/newest_slot.hpp>
+#include <cairn/ros/dds/participant.hpp>
 
 namespace cairn::dds {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "../ros2.hpp"
+#include <cairn/live/ros2.hpp>
 
 namespace cairn::dds {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "access.hpp"
+#include <cairn/live/view/access.hpp>
 
 #include <arpa/inet.h>
 #include <sys/random.h>

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "view_options.hpp"
+#include <cairn/live/view/view_options.hpp>
 
 /// Access control of a live view. Internal to it. (docs/live_view.md, "Security")
 namespace cairn::live {

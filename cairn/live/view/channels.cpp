@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "channels.hpp"
+#include <cairn/live/view/channels.hpp>
 
 #include <algorithm>
 #include <cairn/core/image.hpp>
+#include <cairn/io/raster.hpp>
+#include <cairn/ros/from_step.hpp>
 #include <cmath>
-#include <io/raster.hpp>
-#include <ros/from_step.hpp>
 
-#include "frame_json.hpp"
+#include <cairn/live/view/frame_json.hpp>
 
 namespace cairn::live {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../live_frame.hpp"
+#include <cairn/live/live_frame.hpp>
 
 /// The contents of a live view, channel by channel. Internal to it. (docs/live_view.md, "Channels")
 namespace cairn::live {

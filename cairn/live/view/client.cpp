@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "client.hpp"
+#include <cairn/live/view/client.hpp>
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/output/json_line.hpp>
 #include <exception>
 #include <limits>
-#include <source/json_line.hpp>
 #include <utility>
 
 namespace cairn::live {

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "channels.hpp"
-#include "parameters.hpp"
+#include <cairn/live/view/channels.hpp>
+#include <cairn/live/view/parameters.hpp>
 
 /// One connection of the Foxglove WebSocket protocol, without the socket. Internal to the live view; used by
 /// one thread.

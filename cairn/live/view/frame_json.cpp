@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "frame_json.hpp"
+#include <cairn/live/view/frame_json.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cairn/output/overlay.hpp>
+#include <cairn/ros/from_step.hpp>
 #include <cairn/scene/floor_frame.hpp>
 #include <cmath>
 #include <cstdio>
-#include <io/overlay.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <ros/from_step.hpp>
 
 namespace cairn::live {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "channels.hpp"
+#include <cairn/live/view/channels.hpp>
 
 /// The JSON data of a frame for viewers. Internal to the live view.
 namespace cairn::live {

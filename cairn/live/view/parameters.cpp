@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "parameters.hpp"
+#include <cairn/live/view/parameters.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/config_files.hpp>
+#include <cairn/output/json_line.hpp>
 #include <charconv>
 #include <cmath>
-#include <io/config_files.hpp>
-#include <source/json_line.hpp>
 #include <utility>
 
 namespace cairn::live {

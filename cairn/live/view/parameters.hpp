@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "view_options.hpp"
+#include <cairn/live/view/view_options.hpp>
 
 /// The options of a run as the Foxglove protocol's parameters. Internal to the live view; used by one thread.
 namespace cairn::live {

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "../../source/sequence.hpp"
-#include "../../tracking/follow_config.hpp"
+#include <cairn/input/sequence.hpp>
+#include <cairn/sequence/follow_config.hpp>
 
 namespace cairn::live {
 

@@ -16,24 +16,24 @@
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
 
-#include "view_server.hpp"
+#include <cairn/live/view/view_server.hpp>
 
 #include <unistd.h>
 #include <algorithm>
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/output/web/live_page.hpp>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <page/live_page.hpp>
 #include <set>
 #include <thread>
 
-#include "access.hpp"
-#include "client.hpp"
-#include "frame_json.hpp"
+#include <cairn/live/view/access.hpp>
+#include <cairn/live/view/client.hpp>
+#include <cairn/live/view/frame_json.hpp>
 
 // Boost.Beast is confined to this file: compiling it takes longer than the rest of the folder.
 namespace cairn::live {

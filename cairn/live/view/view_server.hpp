@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "../live_frame.hpp"
-#include "view_options.hpp"
+#include <cairn/live/live_frame.hpp>
+#include <cairn/live/view/view_options.hpp>
 
 namespace cairn::live {
 

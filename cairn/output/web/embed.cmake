@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 #
 # cmake -DFOLDER=… -DOUT=… -P embed.cmake: writes the files of the page as string constants into a C++ source.
-set(source "// Made from page/ by page/embed.cmake.\n#include <page/html_template.hpp>\n\nnamespace cairn::io {\n\n")
+set(source "// Made by cairn/output/web/embed.cmake.\n#include <cairn/output/web/html_template.hpp>\n\nnamespace cairn::io {\n\n")
 foreach(part IN ITEMS
     SharedStyle:shared.css SharedScript:shared.js
     PageLayout:page.html PageStyle:page.css PageScript:page.js

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The player of `cairn follow --html`. Its data are JSON blocks (source/follow_page.cpp): `run`; for each frame
+// The player of `cairn follow --html`. Its data are JSON blocks (cairn/output/follow_page.cpp): `run`; for each frame
 // `facts-N`, its line of tracks.jsonl, parsed at once, and `maps-N`, decoded when shown; `happened`, the lines of
 // events.jsonl. It follows shared.js in one <script>.
 (() => {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/output/overlay.hpp>
+#include <cairn/output/web/html_page.hpp>
+#include <cairn/output/web/html_template.hpp>
+#include <cairn/output/web/page_parts.hpp>
 #include <cmath>
 #include <cstdint>
-#include <io/overlay.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <page/html_page.hpp>
-#include <page/html_template.hpp>
-#include <page/page_parts.hpp>
 
 namespace cairn::io {
 namespace {

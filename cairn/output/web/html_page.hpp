@@ -4,9 +4,9 @@
 
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
-#include <cairn/disparity/reject.hpp>
 #include <cairn/evaluation/object_error.hpp>
 #include <cairn/objects/space.hpp>
+#include <cairn/stereo/reject.hpp>
 #include <string>
 #include <vector>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <page/html_template.hpp>
-#include <page/live_page.hpp>
-#include <page/page_parts.hpp>
+#include <cairn/output/web/html_template.hpp>
+#include <cairn/output/web/live_page.hpp>
+#include <cairn/output/web/page_parts.hpp>
 
 namespace cairn::io {
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // The page of `cairn segment --html` and `cairn evaluate --html`. Its data are JSON blocks next to this script
-// (page/html_page.cpp): `run`, and for each frame `facts-N`, parsed at once, and `maps-N`, decoded when shown. It
+// (cairn/output/web/html_page.cpp): `run`, and for each frame `facts-N`, parsed at once, and `maps-N`, decoded when shown. It
 // follows shared.js in one <script>.
 (() => {
   // ---- data ----

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cairn/disparity/reject.hpp>
-#include <io/overlay.hpp>
-#include <io/raster.hpp>
+#include <cairn/io/raster.hpp>
+#include <cairn/output/overlay.hpp>
+#include <cairn/output/web/html_template.hpp>
+#include <cairn/output/web/page_parts.hpp>
+#include <cairn/stereo/reject.hpp>
 #include <map>
 #include <new>
-#include <page/html_template.hpp>
-#include <page/page_parts.hpp>
 
 namespace cairn::io {
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // Shared by the scripts of all pages; each page's own script follows in the same <script> element. A page's data are
-// JSON blocks (page/page_parts.hpp); `run` describes the whole run.
+// JSON blocks (cairn/output/web/page_parts.hpp); `run` describes the whole run.
 'use strict';
 
 // ---- small helpers ----

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "cdr_type.hpp"
+#include <cairn/ros/dds/cdr_type.hpp>
 
 #include <dds/ddsi/q_radmin.h>
 #include <dds/ddsrt/heap.h>

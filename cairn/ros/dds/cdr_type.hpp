@@ -8,9 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "../../ros/cdr.hpp"
+#include <cairn/ros/cdr.hpp>
 
-/// A Cyclone DDS type whose values are CDR bytes: ros/cdr.hpp is the only encoder, and its output is sent
+/// A Cyclone DDS type whose values are CDR bytes: cairn/ros/cdr.hpp is the only encoder, and its output is sent
 /// without another copy. Keyless, like all ROS 2 messages.
 namespace cairn::dds {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "participant.hpp"
+#include <cairn/ros/dds/participant.hpp>
 
 #include <dds/dds.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <mutex>
 
-#include "cdr_type.hpp"
+#include <cairn/ros/dds/cdr_type.hpp>
 
 namespace cairn::dds {
 namespace {

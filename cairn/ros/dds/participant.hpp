@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../ros/cdr.hpp"
+#include <cairn/ros/cdr.hpp>
 
 /// ROS 2 topics through Cyclone DDS, without any part of ROS. (docs/ros2.md)
 namespace cairn::dds {

@@ -3,12 +3,12 @@
 #include <array>
 #include <utility>
 
-#include "participant.hpp"
+#include <cairn/ros/dds/participant.hpp>
 
 namespace cairn::dds {
 namespace {
 
-/// tests/unit/dds_test.cpp derives them from the members of the messages.
+/// tests/unit/ros/dds_test.cpp derives them from the members of the messages.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kTypeHashes{
     {{"std_msgs/msg/String", "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"},
      {"sensor_msgs/msg/Image", "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"},

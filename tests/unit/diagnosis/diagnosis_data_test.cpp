@@ -4,12 +4,12 @@
 
 #include <cairn/diagnosis/diagnose.hpp>
 #include <cairn/diagnosis/synchrony.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/image_files.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <cstdlib>
 #include <filesystem>
-#include <io/calibration_files.hpp>
-#include <io/dataset.hpp>
-#include <io/image_files.hpp>
 #include <string>
 #include <support/collection.hpp>
 #include <vector>

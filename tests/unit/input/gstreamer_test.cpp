@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/image.hpp>
+#include <cairn/input/sequence.hpp>
+#include <cairn/io/image_files.hpp>
 #include <future>
-#include <io/image_files.hpp>
-#include <source/sequence.hpp>
 #include <support/gst_pipelines.hpp>
 #include <support/temporary_folder.hpp>
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 #include <cairn/core/error.hpp>
-#include <io/image_files.hpp>
-#include <source/sequence.hpp>
+#include <cairn/input/sequence.hpp>
+#include <cairn/io/image_files.hpp>
 
 #include "support/recordings.hpp"
 #include "support/temporary_folder.hpp"

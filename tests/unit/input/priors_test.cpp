@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cairn/input/priors.hpp>
+#include <cairn/input/sequence.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <source/priors.hpp>
-#include <source/sequence.hpp>
 #include <sstream>
 #include <support/collection.hpp>
 #include <support/temporary_folder.hpp>

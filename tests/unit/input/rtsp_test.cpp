@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include <cairn/core/image.hpp>
+#include <cairn/input/sequence.hpp>
 #include <cstdio>
-#include <source/sequence.hpp>
 #include <string>
 #include <support/gst_pipelines.hpp>
 #include <support/temporary_folder.hpp>

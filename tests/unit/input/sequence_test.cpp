@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/image.hpp>
+#include <cairn/input/sequence.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/io/raw_calibration.hpp>
+#include <cairn/sequence/stamp_pairing.hpp>
+#include <cairn/sequence/stamps.hpp>
 #include <filesystem>
-#include <io/calibration_files.hpp>
-#include <io/image_files.hpp>
-#include <io/raw_calibration.hpp>
-#include <source/sequence.hpp>
-#include <source/stamp_pairing.hpp>
-#include <source/stamps.hpp>
 #include <support/collection.hpp>
 #include <support/temporary_folder.hpp>
 

@@ -4,14 +4,14 @@
 
 #include <atomic>
 #include <cairn/core/image.hpp>
+#include <cairn/input/camera/open_camera.hpp>
+#include <cairn/input/camera/stamp_pairer.hpp>
+#include <cairn/input/camera/without_password.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/io/raster.hpp>
+#include <cairn/io/raw_calibration.hpp>
 #include <cmath>
 #include <future>
-#include <io/image_files.hpp>
-#include <io/raster.hpp>
-#include <io/raw_calibration.hpp>
-#include <source/camera/open_camera.hpp>
-#include <source/camera/stamp_pairer.hpp>
-#include <source/camera/without_password.hpp>
 #include <support/fake_v4l2.hpp>
 #include <support/temporary_folder.hpp>
 

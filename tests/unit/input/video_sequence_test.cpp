@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/image.hpp>
+#include <cairn/input/sequence.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 #include <opencv2/videoio/registry.hpp>
-#include <source/sequence.hpp>
 #include <string>
 #include <support/temporary_folder.hpp>
 #include <vector>

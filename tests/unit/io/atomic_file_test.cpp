@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <io/atomic_file.hpp>
-#include <io/read_file.hpp>
+#include <cairn/io/atomic_file.hpp>
+#include <cairn/io/read_file.hpp>
 #include <thread>
 
 #include "support/temporary_folder.hpp"

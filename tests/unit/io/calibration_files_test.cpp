@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <io/calibration_files.hpp>
+#include <cairn/io/calibration_files.hpp>
 
 #include "support/temporary_folder.hpp"
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <io/config_files.hpp>
+#include <cairn/io/config_files.hpp>
 
 #include "support/temporary_folder.hpp"
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <io/calibration_files.hpp>
-#include <io/dataset.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/dataset.hpp>
 
 #include "support/collection.hpp"
 #include "support/temporary_folder.hpp"

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/io/image_files.hpp>
 #include <cmath>
-#include <io/disparity_files.hpp>
-#include <io/image_files.hpp>
 #include <limits>
 
 #include "support/temporary_folder.hpp"

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <io/image_files.hpp>
-#include <io/raster.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/io/raster.hpp>
 
 #include "support/small_pictures.hpp"
 #include "support/temporary_folder.hpp"

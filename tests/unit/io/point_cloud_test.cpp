@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <bit>
 #include <cairn/core/error.hpp>
+#include <cairn/io/point_cloud.hpp>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <io/point_cloud.hpp>
 #include <iterator>
 #include <limits>
 #include <sstream>

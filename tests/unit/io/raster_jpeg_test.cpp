@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/image.hpp>
+#include <cairn/io/raster.hpp>
 #include <cstdlib>
-#include <io/raster.hpp>
 #include <random>
 #include <string>
 #include <support/temporary_folder.hpp>

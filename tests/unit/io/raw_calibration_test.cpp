@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <io/calibration_files.hpp>
-#include <io/dataset.hpp>
-#include <io/raw_calibration.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/raw_calibration.hpp>
 #include <string>
 
 #include "support/temporary_folder.hpp"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/error.hpp>
-#include <io/rle.hpp>
+#include <cairn/io/rle.hpp>
 #include <random>
 
 namespace cairn::io {

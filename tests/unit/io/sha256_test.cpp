@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <io/sha256.hpp>
+#include <cairn/io/sha256.hpp>
 
 /// The examples of FIPS 180-4 and of its companion documents.
 namespace cairn::io {

@@ -6,9 +6,9 @@
 #include <unistd.h>
 
 #include <cairn/core/error.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/config_files.hpp>
 #include <cairn/pipeline/config.hpp>
-#include <io/calibration_files.hpp>
-#include <io/config_files.hpp>
 #include <random>
 #include <string>
 #include <support/temporary_folder.hpp>

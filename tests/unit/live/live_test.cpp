@@ -4,9 +4,9 @@
 
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/live/looped.hpp>
+#include <cairn/live/runner.hpp>
 #include <functional>
-#include <live/looped.hpp>
-#include <live/runner.hpp>
 #include <thread>
 
 #include "support/samples.hpp"

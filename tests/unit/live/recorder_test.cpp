@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 #include <cairn/core/error.hpp>
-#include <live/recorder.hpp>
+#include <cairn/input/sequence.hpp>
+#include <cairn/live/recorder.hpp>
 #include <map>
-#include <source/sequence.hpp>
 #include <thread>
 
 #include "support/recordings.hpp"

@@ -8,17 +8,17 @@
 
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/live/runner.hpp>
+#include <cairn/live/view/access.hpp>
+#include <cairn/live/view/client.hpp>
+#include <cairn/live/view/view_server.hpp>
 #include <cairn/pipeline/segment.hpp>
+#include <cairn/ros/from_step.hpp>
 #include <cstdio>
 #include <iterator>
-#include <live/runner.hpp>
-#include <live/view/access.hpp>
-#include <live/view/client.hpp>
-#include <live/view/view_server.hpp>
 #include <map>
 #include <mutex>
 #include <random>
-#include <ros/from_step.hpp>
 #include <thread>
 
 #include "support/samples.hpp"
@@ -276,7 +276,8 @@ TEST(ViewServer, ReadsAddresses) {
   EXPECT_EQ(read("10.1.2.3"), "10.1.2.3 8765");
   EXPECT_EQ(read("[::1]:9000"), "::1 9000");
   EXPECT_EQ(read("::1"), "::1 8765");
-  for (const char* wrong : {"robot:80", "127.0.0.1:x", "127.0.0.1:70000", "127.0.0.1:", "samples/overlap"})
+  for (const char* wrong :
+       {"robot:80", "127.0.0.1:x", "127.0.0.1:70000", "127.0.0.1:", "data/samples/overlap"})
     EXPECT_TRUE(has(refusal_of([&] { read(wrong); }), wrong)) << wrong;
 }
 

@@ -5,10 +5,10 @@
 // cli/follow_page_in_browser.py.
 #include <gtest/gtest.h>
 
+#include <cairn/io/raster.hpp>
+#include <cairn/output/follow_page.hpp>
 #include <filesystem>
-#include <io/raster.hpp>
 #include <nlohmann/json.hpp>
-#include <source/follow_page.hpp>
 
 #include "support/packed_map.hpp"
 #include "support/temporary_folder.hpp"

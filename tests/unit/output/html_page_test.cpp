@@ -7,12 +7,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cairn/io/raster.hpp>
+#include <cairn/output/web/html_page.hpp>
 #include <cmath>
 #include <cstdlib>
-#include <io/raster.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <page/html_page.hpp>
 
 #include "support/packed_map.hpp"
 

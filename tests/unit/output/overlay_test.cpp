@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/image.hpp>
+#include <cairn/output/overlay.hpp>
 #include <cstdlib>
-#include <io/overlay.hpp>
 #include <limits>
 #include <set>
 

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/io/dataset.hpp>
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/io/rle.hpp>
+#include <cairn/output/results.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <io/dataset.hpp>
-#include <io/disparity_files.hpp>
-#include <io/image_files.hpp>
-#include <io/results.hpp>
-#include <io/rle.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>

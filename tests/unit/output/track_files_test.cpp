@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <io/image_files.hpp>
-#include <source/track_files.hpp>
-#include <source/trajectory_files.hpp>
-#include <source/true_frames.hpp>
+#include <cairn/input/true_frames.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/output/track_files.hpp>
+#include <cairn/output/trajectory_files.hpp>
 #include <string>
 #include <support/temporary_folder.hpp>
 

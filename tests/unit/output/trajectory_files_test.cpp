@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/error.hpp>
+#include <cairn/output/trajectory_files.hpp>
 #include <filesystem>
 #include <fstream>
-#include <source/trajectory_files.hpp>
 
 namespace cairn::io {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/grouping/choose_objects.hpp>
+#include <cairn/regions/choose_objects.hpp>
 
 #include <gtest/gtest.h>
 

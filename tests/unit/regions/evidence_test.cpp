@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/grouping/evidence.hpp>
 #include <cairn/image/noise.hpp>
+#include <cairn/regions/evidence.hpp>
 #include <limits>
 
 #include "support/grids.hpp"

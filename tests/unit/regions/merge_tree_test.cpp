@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/grouping/merge_tree.hpp>
+#include <cairn/regions/merge_tree.hpp>
 
 #include <gtest/gtest.h>
 

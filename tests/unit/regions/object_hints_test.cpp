@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/grouping/object_hints.hpp>
+#include <cairn/regions/object_hints.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cairn/grouping/merge_tree.hpp>
+#include <cairn/regions/merge_tree.hpp>
 #include <cmath>
 #include <limits>
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cairn/core/target.hpp>
-#include <cairn/grouping/fitted_trees.hpp>
-#include <cairn/grouping/merge_tree.hpp>
+#include <cairn/regions/fitted_trees.hpp>
+#include <cairn/regions/merge_tree.hpp>
 #include <cmath>
 #include <random>
 #include <set>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/disparity/gradient.hpp>
 #include <cairn/regions/region_graph.hpp>
+#include <cairn/stereo/gradient.hpp>
 
 #include "support/grids.hpp"
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/grouping/superpixels.hpp>
+#include <cairn/regions/superpixels.hpp>
 #include <limits>
 #include <set>
 

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/disparity/gradient.hpp>
 #include <cairn/regions/split_floor.hpp>
 #include <cairn/regions/watershed.hpp>
+#include <cairn/stereo/gradient.hpp>
 
 #include "support/grids.hpp"
 

@@ -5,15 +5,15 @@
 #include <ros.h>
 
 #include <cairn/core/error.hpp>
+#include <cairn/input/dds/ros2_sequence.hpp>
+#include <cairn/input/ros_pictures.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/live/dds/ros2_sink.hpp>
 #include <cairn/pipeline/segment.hpp>
+#include <cairn/ros/dds/participant.hpp>
 #include <cmath>
-#include <io/calibration_files.hpp>
-#include <io/image_files.hpp>
-#include <live/dds/ros2_sink.hpp>
 #include <nlohmann/json.hpp>
-#include <source/dds/participant.hpp>
-#include <source/dds/ros2_sequence.hpp>
-#include <source/ros_pictures.hpp>
 
 #include "support/dds_domain.hpp"
 #include "support/type_hash.hpp"
@@ -41,7 +41,7 @@ std::string message_of(const auto& call) {
 
 /// An image with objects, as in a robot's loop; `frame_id`: of its source.
 live::LiveFramePtr made_frame(const std::string& frame_id) {
-  const std::filesystem::path folder = std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / "four_in_a_row";
+  const std::filesystem::path folder = std::filesystem::path(CAIRN_SOURCE_DIR) / "data" / "samples" / "four_in_a_row";
   io::PicturePair images = io::load_pair(folder / "left.png", folder / "right.png");
   const io::Calibration calibration = io::load_calibration(folder / "calib.txt");
   FollowConfig config;
@@ -64,7 +64,8 @@ live::LiveFramePtr live_frame() {
   return made;
 }
 StereoRig rig() {
-  return *io::load_calibration(std::filesystem::path(CAIRN_SOURCE_DIR) / "samples/four_in_a_row/calib.txt")
+  return *io::load_calibration(std::filesystem::path(CAIRN_SOURCE_DIR) /
+                               "data/samples/four_in_a_row/calib.txt")
               .rig;
 }
 
@@ -577,7 +578,7 @@ TEST_F(Dds, ASourcePairsWithinTheSkew) {
   const std::string refused = message_of([&] { ros2_sequence("ros2:" + prefix, options, {}); });
   EXPECT_NE(refused.find("differ by more than 0.001 s (--max-skew)"), std::string::npos) << refused;
   options.max_skew_ms = 5;
-  options.calib = std::string(CAIRN_SOURCE_DIR) + "/samples/four_in_a_row/calib.txt";
+  options.calib = std::string(CAIRN_SOURCE_DIR) + "/data/samples/four_in_a_row/calib.txt";
   const auto source = ros2_sequence("ros2:" + prefix, options, {});
   EXPECT_TRUE(source->next());
   EXPECT_TRUE(source->rig());

@@ -4,8 +4,8 @@
 #include <sys/resource.h>
 
 #include <cairn/core/error.hpp>
+#include <cairn/ros/mcap_format.hpp>
 #include <csignal>
-#include <ros/mcap_format.hpp>
 
 #include "support/recordings.hpp"
 #include "support/temporary_folder.hpp"

@@ -4,7 +4,7 @@
 
 #include <cairn_ros/conversions.hpp>
 
-/// The conversions in packaging/ros2/cairn_ros, with plain structs instead of those of rclcpp: cairn's own,
+/// The conversions in ros2, with plain structs instead of those of rclcpp: cairn's own,
 /// whose members have the same names.
 namespace cairn_ros {
 namespace {

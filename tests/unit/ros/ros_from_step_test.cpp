@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 #include <bit>
 #include <cairn/core/error.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/image_files.hpp>
 #include <cairn/pipeline/segment.hpp>
+#include <cairn/ros/from_step.hpp>
 #include <cmath>
 #include <cstring>
-#include <io/calibration_files.hpp>
-#include <io/image_files.hpp>
-#include <ros/from_step.hpp>
 
 namespace cairn::ros {
 namespace {
@@ -24,7 +24,7 @@ struct Sample {
 const Sample& sample() {
   static const Sample made = [] {
     const std::filesystem::path folder =
-        std::filesystem::path(CAIRN_SOURCE_DIR) / "samples" / "four_in_a_row";
+        std::filesystem::path(CAIRN_SOURCE_DIR) / "data" / "samples" / "four_in_a_row";
     Sample s;
     s.images = io::load_pair(folder / "left.png", folder / "right.png");
     s.calibration = io::load_calibration(folder / "calib.txt");

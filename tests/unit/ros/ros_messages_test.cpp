@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 #include <cairn/core/error.hpp>
+#include <cairn/ros/messages.hpp>
 #include <random>
-#include <ros/messages.hpp>
 
 namespace cairn::ros {
 namespace {

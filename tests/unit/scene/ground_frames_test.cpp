@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 #include <cairn/cairn.hpp>
-#include <io/calibration_files.hpp>
-#include <io/image_files.hpp>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/image_files.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "tracking/assign.hpp"
-#include "tracking/tracks.hpp"
+#include <cairn/sequence/assign.hpp>
+#include <cairn/sequence/tracks.hpp>
 
 namespace cairn {
 namespace {

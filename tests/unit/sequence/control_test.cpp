@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
+#include <cairn/sequence/follower.hpp>
 #include "support/samples.hpp"
-#include "tracking/follower.hpp"
 
 namespace cairn {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 
+#include <cairn/sequence/follower.hpp>
 #include "support/samples.hpp"
-#include "tracking/follower.hpp"
 
 namespace cairn {
 namespace {

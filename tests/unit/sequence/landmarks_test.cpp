@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/sequence/landmarks.hpp>
 #include <functional>
-#include <landmarks/landmarks.hpp>
 #include <set>
 #include <support/drawn_room.hpp>
 

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cairn/sequence/landmarks.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <io/calibration_files.hpp>
-#include <io/disparity_files.hpp>
-#include <io/image_files.hpp>
-#include <landmarks/landmarks.hpp>
 #include <support/collection.hpp>
 #include <support/true_tracks.hpp>
 

@@ -8,9 +8,9 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <cairn/core/error.hpp>
+#include <cairn/sequence/map_exports.hpp>
+#include <cairn/sequence/map_file.hpp>
 #include <csignal>
-#include <landmarks/map_exports.hpp>
-#include <landmarks/map_file.hpp>
 #include <random>
 #include <sstream>
 #include <support/temporary_folder.hpp>

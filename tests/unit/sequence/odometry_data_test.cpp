@@ -5,19 +5,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cairn/input/priors.hpp>
+#include <cairn/input/sequence.hpp>
+#include <cairn/output/trajectory_files.hpp>
 #include <cairn/pipeline/segment.hpp>
+#include <cairn/sequence/first_pose.hpp>
+#include <cairn/sequence/odometry.hpp>
+#include <cairn/sequence/trajectory_error.hpp>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <numbers>
-#include <source/priors.hpp>
-#include <source/sequence.hpp>
-#include <source/trajectory_files.hpp>
 #include <support/collection.hpp>
-#include <tracking/first_pose.hpp>
-#include <tracking/odometry.hpp>
-#include <tracking/trajectory_error.hpp>
 
 namespace cairn {
 namespace {

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cairn/sequence/odometry.hpp>
+#include <cairn/sequence/trajectory_error.hpp>
 #include <cmath>
 #include <numbers>
 #include <opencv2/core/utility.hpp>
 #include <support/textured_room.hpp>
-#include <tracking/odometry.hpp>
-#include <tracking/trajectory_error.hpp>
 
 namespace cairn {
 namespace {

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/sequence/pose.hpp>
 #include <cmath>
 #include <numbers>
-#include <tracking/pose.hpp>
 
 namespace cairn {
 namespace {

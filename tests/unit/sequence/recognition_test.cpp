@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/sequence/landmarks.hpp>
 #include <cmath>
-#include <landmarks/landmarks.hpp>
 #include <numbers>
 
 namespace cairn {

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/error.hpp>
+#include <cairn/input/laser_scans.hpp>
 #include <cmath>
 #include <limits>
-#include <source/laser_scans.hpp>
 
+#include <cairn/sequence/follower.hpp>
 #include "support/samples.hpp"
 #include "support/temporary_folder.hpp"
-#include "tracking/follower.hpp"
 
 namespace cairn {
 namespace {

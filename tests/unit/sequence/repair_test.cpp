@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <tracking/repair.hpp>
+#include <cairn/sequence/repair.hpp>
 
 namespace cairn {
 namespace {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/image.hpp>
+#include <cairn/sequence/track_error.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,7 +12,6 @@
 #include <random>
 #include <string>
 #include <support/collection.hpp>
-#include <tracking/track_error.hpp>
 
 namespace cairn {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "tracking/kalman.hpp"
-#include "tracking/tracks.hpp"
+#include <cairn/sequence/kalman.hpp>
+#include <cairn/sequence/tracks.hpp>
 
 namespace cairn {
 namespace {

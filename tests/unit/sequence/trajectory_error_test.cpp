@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/output/trajectory_files.hpp>
+#include <cairn/sequence/trajectory_error.hpp>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
-#include <source/trajectory_files.hpp>
 #include <support/collection.hpp>
-#include <tracking/trajectory_error.hpp>
 
 namespace cairn {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tracking/warp.hpp"
+#include <cairn/sequence/warp.hpp>
 
 namespace cairn {
 namespace {

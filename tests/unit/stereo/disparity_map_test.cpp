@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 #include <cairn/core/error.hpp>
-#include <cairn/disparity/disparity_map.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 
 #include <cmath>
 #include <fstream>

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cairn/core/target.hpp>
-#include <cairn/matching/match.hpp>
+#include <cairn/stereo/match.hpp>
 #include <cmath>
 
 #include "support/synthetic_scene.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
-#include <cairn/disparity/speckle.hpp>
+#include <cairn/stereo/speckle.hpp>
 
 #include <cmath>
 #include <limits>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/matching/subpixel.hpp>
+#include <cairn/stereo/subpixel.hpp>
 #include <cmath>
 
 namespace {

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/timing/drawn_pair.hpp>
+#include <cairn/timing/frame_times.hpp>
+#include <cairn/timing/statistics.hpp>
 #include <cmath>
 #include <cstdlib>
-#include <timing/drawn_pair.hpp>
-#include <timing/frame_times.hpp>
-#include <timing/statistics.hpp>
 
 namespace cairn::report {
 namespace {

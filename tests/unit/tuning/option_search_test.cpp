@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// The search for parameters on the fit set: fitting/option_search.hpp.
+// The search for parameters on the fit set: lab/option_search.hpp.
 #include <gtest/gtest.h>
 
+#include <../../../lab/option_search.hpp>
 #include <cmath>
-#include <fitting/option_search.hpp>
 
 namespace cairn::report {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/regions/label_kernels.hpp>
-#include <cairn/regions/label_kernels_plain.hpp>
+#include <cairn/stereo/label_kernels.hpp>
+#include <cairn/stereo/label_kernels_plain.hpp>
 
-#define CAIRN_KERNELS "cairn/regions/label_kernels-inl.hpp"
+#define CAIRN_KERNELS "cairn/stereo/label_kernels-inl.hpp"
 #define CAIRN_KERNELS_USE_VECTORS
 #include <cairn/core/each_target-inl.hpp>
 

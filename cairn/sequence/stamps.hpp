@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../tracking/pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
 /// Parsing of frame stamps in text files and names. (docs/formats.md, "Stamps")
 namespace cairn::io {

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "stamps.hpp"
+#include <cairn/sequence/stamps.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/frame_names.hpp>
+#include <cairn/io/read_file.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <io/frame_names.hpp>
-#include <io/read_file.hpp>
 #include <limits>
 #include <map>
 
-#include "names_and_numbers.hpp"
-#include "stamp_pairing.hpp"
-#include "text_lines.hpp"
+#include <cairn/io/names_and_numbers.hpp>
+#include <cairn/io/text_lines.hpp>
+#include <cairn/sequence/stamp_pairing.hpp>
 
 namespace cairn::io {
 namespace {

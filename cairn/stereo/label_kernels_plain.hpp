@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cairn/disparity/gradient.hpp>
-#include <cairn/regions/label_kernels.hpp>
+#include <cairn/stereo/gradient.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 
 namespace cairn::kernels::plain_labels {
 

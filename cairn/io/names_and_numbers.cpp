@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "names_and_numbers.hpp"
+#include <cairn/io/names_and_numbers.hpp>
 
 namespace cairn::io {
 

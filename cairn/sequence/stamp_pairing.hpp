@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "../tracking/pose.hpp"
+#include <cairn/sequence/pose.hpp>
 
 namespace cairn::io {
 

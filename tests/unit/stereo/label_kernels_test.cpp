@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/target.hpp>
-#include <cairn/regions/label_kernels.hpp>
+#include <cairn/stereo/label_kernels.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>

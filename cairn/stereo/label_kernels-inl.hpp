@@ -7,5 +7,5 @@ namespace cairn::kernels {
 namespace plain_kernels = plain_labels;
 }
 #else
-#include <cairn/regions/label_kernels_highway-inl.hpp>
+#include <cairn/stereo/label_kernels_highway-inl.hpp>
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "text_lines.hpp"
+#include <cairn/io/text_lines.hpp>
 
 #include <array>
 #include <cairn/core/error.hpp>
