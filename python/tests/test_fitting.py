@@ -14,7 +14,7 @@ from conftest import SOURCE
 
 
 def load(name):
-    spec = importlib.util.spec_from_file_location(name, SOURCE / "fitting" / f"{name}.py")
+    spec = importlib.util.spec_from_file_location(name, SOURCE / "lab" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -134,7 +134,7 @@ def test_clutter_is_a_separate_set(tmp_path):
 
 
 def test_a_close_view_has_the_input_of_a_narrow_lens(monkeypatch):
-    monkeypatch.syspath_prepend(str(SOURCE / "fitting"))
+    monkeypatch.syspath_prepend(str(SOURCE / "lab"))
     hints = load("fit_hints")
     data = np.zeros((hints.CHANNELS, hints.HEIGHT, hints.WIDTH), np.float32)
     inside = np.ones(data.shape[1:], bool)
