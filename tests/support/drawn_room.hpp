@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 #include <random>
-#include <true_tracks.hpp>
 #include <vector>
+#include "true_tracks.hpp"
 
 /// A room with upright cylinders on a floor, seen by a stereo camera: disparities and ids by ray casting.
 namespace cairn::support {

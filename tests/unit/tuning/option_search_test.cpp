@@ -4,8 +4,8 @@
 // The search for parameters on the fit set: lab/option_search.hpp.
 #include <gtest/gtest.h>
 
-#include <../../../lab/option_search.hpp>
 #include <cmath>
+#include <lab/option_search.hpp>
 
 namespace cairn::report {
 namespace {
