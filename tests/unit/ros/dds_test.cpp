@@ -41,7 +41,8 @@ std::string message_of(const auto& call) {
 
 /// An image with objects, as in a robot's loop; `frame_id`: of its source.
 live::LiveFramePtr made_frame(const std::string& frame_id) {
-  const std::filesystem::path folder = std::filesystem::path(CAIRN_SOURCE_DIR) / "data" / "samples" / "four_in_a_row";
+  const std::filesystem::path folder =
+      std::filesystem::path(CAIRN_SOURCE_DIR) / "data" / "samples" / "four_in_a_row";
   io::PicturePair images = io::load_pair(folder / "left.png", folder / "right.png");
   const io::Calibration calibration = io::load_calibration(folder / "calib.txt");
   FollowConfig config;
