@@ -6,7 +6,7 @@
 # next to its final name (cairn/io/atomic_file.hpp), never in a folder that others may write to.
 set -euo pipefail
 cd "$1"
-readonly installed=(cairn io page tracking landmarks ros source live batch timing cli python/bindings python/cairn)
+readonly installed=(cairn cli python/bindings python/cairn)
 readonly calls='temp_directory_path|tmpnam|tempnam|tmpfile|mktemp|mkstemp|mkostemp|mkdtemp|shm_open|tempfile'
 readonly folders='"/(var/)?tmp|/dev/shm|TMPDIR'
 [[ $(ls -d "${installed[@]}" | wc -l) == "${#installed[@]}" ]]
