@@ -32,8 +32,7 @@ set(private_headers
   input/open_ros2 input/open_video input/ros_pictures sequence/stamp_pairing io/text_lines
   output/json_line web/html_template web/live_page web/page_parts ros/mcap_format
   view/access view/channels view/client view/frame_json view/parameters
-  [a-z]+/[a-z_]+_kernels
-  "(video|camera|dds|batch|timing)/[a-z0-9_]+")
+  [a-z]+/[a-z_]+_kernels)
 list(JOIN private_headers "|" private_headers)
 
 set(not_built)
@@ -48,6 +47,7 @@ install(DIRECTORY cairn/ DESTINATION ${include_dir} COMPONENT dev FILES_MATCHING
   PATTERN "*.hpp"
   PATTERN "*-inl.hpp" EXCLUDE
   REGEX "/(${private_headers})\\.hpp$" EXCLUDE
+  REGEX "/cairn/(batch|timing|fitted)$|/(video|camera|dds)$" EXCLUDE
   ${not_built})
 if(CAIRN_IO)
   cairn_install_library(cairn_io cairnIoTargets library)
