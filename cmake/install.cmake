@@ -57,7 +57,7 @@ if(CAIRN_IO)
   install(FILES docs/schema/objects.schema.json docs/schema/batch_row.schema.json packaging/slurm/cairn.sbatch DESTINATION ${CMAKE_INSTALL_DATADIR}/cairn COMPONENT tools)
   # The commands' help refers to these pages.
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools FILES_MATCHING
-    REGEX "\\.(md|png|svg)$"
+    REGEX "\\.(md|png)$"
     PATTERN site EXCLUDE
     PATTERN schema EXCLUDE)
 endif()

@@ -316,8 +316,8 @@ def stress(data, threads, plots):
         panels = [panel("objects found (IoU ≥ 0.5), %", 100, lambda s: 100 * s.recall_50), panel("median E, % (200 = missed)", 200, lambda s: 100 * s.median_error),
                   panel("density, %", 100, lambda s: 100 * s.density), panel("bad-2 of the matched, %", None, lambda s: 100 * s.bad_2)]
         ticks = dict(variants.values())
-        plots[f"stress_{name}.svg"] = dict(x=list(ticks), panels=panels, x_title=title, ticks=ticks, lines=is_strength)
-        images += f"![found, E, density and bad-2 against: {title}](images/accuracy/stress_{name}.svg)\n\n"
+        plots[f"stress_{name}.png"] = dict(x=list(ticks), panels=panels, x_title=title, ticks=ticks, lines=is_strength)
+        images += f"![found, E, density and bad-2 against: {title}](images/accuracy/stress_{name}.png)\n\n"
     return ("## Under stress\n\nThree rendered scenes, 320x240, in which one condition at a time gets worse "
             f"(`rendered/stress`): {objects} scored objects: one object is {percent(1 / objects)} % of found. Disparity errors are over the pixels visible to both cameras.\n\n{images}")
 
@@ -453,8 +453,8 @@ def sequences(data, threads, plots):
         panel = curves(summaries)
         panels = [panel("objects found (IoU ≥ 0.5), %", 100, lambda s: 100 * s.recall_50), panel("precision, %", 100, lambda s: 100 * s.precision_50),
                   panel("median E, % (200 = missed)", 200, lambda s: 100 * s.median_error), panel("phantoms", None, lambda s: s.phantoms_per_frame)]
-        plots[f"{name}.svg"] = dict(x=list(range(len(frames))), panels=panels, x_title="frame", dots=False)
-        images += f"![found, precision, E and phantoms of each frame of {name}](images/accuracy/{name}.svg)\n\n"
+        plots[f"{name}.png"] = dict(x=list(range(len(frames))), panels=panels, x_title="frame", dots=False)
+        images += f"![found, precision, E and phantoms of each frame of {name}](images/accuracy/{name}.png)\n\n"
     header = ["", "found 0.5, %", "found 0.75, %", "precision, %", "median E, %", "phantoms", "density, %", "bad-2, %"]
     of_objects = ["`default`, object", "frames", "found", "not found", "of these merged", "lost", "median IoU", "mean change of IoU", "greatest fall of IoU"]
     return f"""## Frame by frame

@@ -89,10 +89,10 @@ def main():
     plots.mkdir(parents=True, exist_ok=True)
     tables, machine = zip(*(stage_table(cairn, preset) for preset in PRESETS))
     sizes = [((w, h), 64) for w, h in ((320, 240), (480, 360), (640, 480), (800, 600), (960, 720), (1280, 960))]
-    pixels = growth(cairn, "Time against pixels", plots / "pixels.svg", "megapixels, 64 disparities", "megapixel", 1, ".2f", sizes,
+    pixels = growth(cairn, "Time against pixels", plots / "pixels.png", "megapixels, 64 disparities", "megapixel", 1, ".2f", sizes,
                     lambda size, n: 1e-6 * size[0] * size[1])
     ranges = [((640, 480), n) for n in range(32, 257, 32)]
-    disparities = growth(cairn, "Time against disparities", plots / "disparities.svg", "disparities, 640x480", "64 disparities", 64, ".0f", ranges,
+    disparities = growth(cairn, "Time against disparities", plots / "disparities.png", "disparities, 640x480", "64 disparities", 64, ".0f", ranges,
                          lambda size, n: n)
     engines = "Not measured in this run: it needs OpenCV's calib3d and the data collection.\n"
     if len(sys.argv) == 5:

@@ -7,8 +7,8 @@ import pathlib
 
 import matplotlib
 
-matplotlib.use("svg")
-matplotlib.rcParams.update({"svg.hashsalt": "cairn", "svg.fonttype": "none", "font.family": "sans-serif", "font.size": 8})
+matplotlib.use("agg")
+matplotlib.rcParams.update({"font.family": "sans-serif", "font.size": 8})
 import matplotlib.pyplot as plt  # noqa: E402
 
 
@@ -52,7 +52,7 @@ def plot(path, x, panels, x_title, ticks=None, lines=True, dots=True):
             axis.margins(x=0.5 / len(x))
     axes[0][0].legend(frameon=False)
     figure.tight_layout()
-    figure.savefig(path, metadata={"Date": None})
+    figure.savefig(path, dpi=150, metadata={"Software": None})  # the same bytes in each run
     plt.close(figure)
 
 

@@ -16,7 +16,7 @@ import sys
 import textwrap
 from pathlib import Path
 
-PICTURES = {".png", ".svg", ".jpg"}
+PICTURES = {".png", ".jpg"}
 LANGUAGES = {".hpp": "cpp", ".cpp": "cpp", ".py": "python", ".sh": "bash", ".json": "json", ".yml": "yaml",
              ".cmake": "cmake"}
 LINK = re.compile(r'(\]\(|src=")([^)#"\s:]+)(#[^)"\s]*)?([)"])')
