@@ -17,24 +17,18 @@ namespace {
 std::vector<Knob> knobs() {
   return {
       {"intensity.gradient_threshold", {"0", "1", "2", "3", "4", "6"}},
-      {"intensity.smoothing_sigma", {"0.7", "1", "1.5", "2"}},
       {"disparity.mean_difference_max", {"0.5", "0.75", "1", "1.5", "2"}},
       {"disparity.deviation_max", {"0.5", "0.75", "1", "1.5"}},
-      {"disparity.min_region_area", {"0.2", "0.5", "1", "1.5"}},
       {"objects.min_area", {"0.1", "0.3", "0.5", "1"}},
       {"disparity.gradient_threshold", {"0", "0.125", "0.25", "0.5", "1"}},
       {"texture.threshold", {"1", "2", "3", "5"}},
       {"uniqueness.ratio", {"-1", "2", "5", "10"}},
       {"ground.margin", {"0.75", "1", "1.5"}},
       {"intensity.mean_difference_max", {"2", "3", "5", "8"}},
-      {"intensity.min_region_area", {"0.03", "0.1", "0.3"}},
-      {"disparity.smoothing_sigma", {"0", "0.7", "1.5"}},
       {"match.window_size", {"7", "9", "11", "13"}},
       {"left_right.max_diff", {"1", "2"}},
       {"flatness.threshold", {"-1", "0.05", "0.1", "0.2"}},
       {"intensity.deviation_max", {"0.5", "1", "1.5"}},
-      {"intensity.sigma_min", {"1", "2", "4"}},
-      {"disparity.sigma_min", {"0.125", "0.25", "0.5"}},
   };
 }
 

@@ -32,7 +32,6 @@ WRONG = {
     "objects.min_area=3": [],
     "ground.margin=30": [],
     "speckle.size=20000": [],
-    "evidence.gradient_min=60": [],
     "background.max_walls=0": [],
     "left_right.max_diff=0": [],
     "match.method=window": [],

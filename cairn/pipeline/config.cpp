@@ -1,49 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <cairn/pipeline/option_walk.hpp>
 
 namespace cairn {
-namespace {
-
-// ---- options of earlier versions ----
-
-struct Gone {
-  std::string_view option;
-  std::string_view where;
-};
-
-constexpr std::array kGone{
-    Gone{"match.evidence", "the maps that checks and confidence need are always computed"},
-    Gone{"confidence.enabled", "confidence is always computed"},
-    Gone{"ground.points", "it is now ground_points in the calibration file (docs/formats.md)"},
-    Gone{"ground.height", "it is now camera_height in the calibration file (docs/formats.md)"},
-    Gone{"ground.pitch", "it is now camera_pitch in the calibration file (docs/formats.md)"},
-    Gone{"ground.roll", "it is now camera_roll in the calibration file (docs/formats.md)"}};
-
-constexpr std::array<std::string_view, 6> kConstants{"evidence.noise_factor",       "evidence.agreement",
-                                                     "background.tolerance",        "background.min_share",
-                                                     "background.min_share_square", "background.max_behind"};
-/// Option groups of stages that no longer exist.
-constexpr std::array<std::string_view, 3> kGoneSections{"facets.", "figure.", "group."};
-
-void refuse_what_is_gone(std::string_view name) {
-  for (const auto& [option, where] : kGone) {
-    if (option == name) throw Error("option " + std::string(name) + " was removed: " + std::string(where));
-  }
-  if (std::find(kConstants.begin(), kConstants.end(), name) != kConstants.end())
-    throw Error("option " + std::string(name) + " was removed: it is a constant of its stage");
-  for (const std::string_view section : kGoneSections) {
-    if (name.starts_with(section))
-      throw Error("option " + std::string(name) + " was removed: fitted scores replaced its stage");
-  }
-}
-
-}  // namespace
 
 std::vector<OptionInfo> options(const Config& config) {
   return option_walk::options_of(config);
@@ -61,7 +24,6 @@ void require_active(const Config& config, std::string_view name, const std::vect
 
 void set(Config& config, std::string_view name, std::string_view value) {
   if (option_walk::set_known(config, name, value)) return;
-  refuse_what_is_gone(name);
   option_walk::refuse_unknown(name, options(config));
 }
 
@@ -101,12 +63,10 @@ Config Config::paper() {
   c.texture = {.threshold = 2.0F};
   c.ground.margin = 0.75F;
   c.speckle.size = -1;
-  c.intensity.smoothing_sigma = 1.5F;
   c.intensity.gradient_threshold = 4.0F;
   c.disparity.gradient_threshold = 0.25F;
   c.disparity.mean_difference_max = 1.5F;
   c.disparity.deviation_max = 1.5F;
-  c.disparity.min_region_area = 1.0F;
   c.fusion = {};
   c.objects = {.min_area = 0.5F};
   return c;

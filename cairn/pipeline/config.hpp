@@ -69,7 +69,6 @@ void for_each_section(C& c, F&& visit) {
   visit("texture", c.texture);
   visit("ground", c.ground);
   visit("speckle", c.speckle);
-  visit("evidence", c.evidence);
   visit("background", c.background);
   visit("intensity", c.intensity);
   visit("disparity", c.disparity);
@@ -95,8 +94,8 @@ struct OptionInfo {
 std::vector<OptionInfo> options(const Config& config);
 /// The options that `config` reads.
 std::vector<OptionInfo> active_options(const Config& config);
-/// Sets one option from its text. Throws Error: unknown name (suggests the nearest known one), removed option
-/// (names its replacement), wrong type, out of range (states the range). Also sets options that are not read,
+/// Sets one option from its text. Throws Error: unknown name (suggests the nearest known one), wrong type,
+/// out of range (states the range). Also sets options that are not read,
 /// since their condition may be set later: call require_active() after the last set().
 void set(Config& config, std::string_view name, std::string_view value);
 /// Throws Error if `config` does not read the option, stating what to set first. With `sections`, only

@@ -8,19 +8,13 @@
 
 namespace cairn {
 
+/// Constants of the method, not options.
 struct EvidenceConfig {
-  // A constant, not an option: noise σ; a textured pixel has a horizontal gradient of at least this times σ …
+  // A textured pixel has a horizontal gradient of at least this times the noise's σ …
   float noise_factor = 1.0F;
-  float gradient_min = 0.65F;  // grey levels, 0 … 255; … plus this; higher trusts fewer pixels (dark images)
-  // A constant, not an option: ‰ of the width; largest difference between neighbouring textured disparities.
-  float agreement = 2.5F;
+  float gradient_min = 0.65F;  // … plus this, in grey levels
+  float agreement = 2.5F;      // ‰ of the width; largest difference of neighbouring textured disparities
 };
-template <class V>
-void fields(EvidenceConfig& c, V&& v) {
-  v("gradient_min", c.gradient_min, "grey levels",
-    "smallest horizontal gradient above the noise of a textured pixel", range(0.0F, 255.0F),
-    when("fusion.method", "hierarchy"));
-}
 
 /// The textured disparities, NaN elsewhere: valid ones at pixels whose horizontal gradient exceeds the noise
 /// and is not that of a nearly horizontal edge (|gx| > |gy|/2), with at least three agreeing disparities of

@@ -86,7 +86,6 @@ std::vector<Arm> arms_of(const Config& config, Size image, float step) {
     scale_whole("superpixels.count", config.superpixels.count, by);
     scale("objects.min_area", config.objects.min_area, 1 / by);
     scale("ground.margin", config.ground.margin, 1 / by);
-    scale("evidence.gradient_min", config.evidence.gradient_min, 1 / by);
     scale_whole("speckle.size", config.speckle.size, 1 / by);
     scale("left_right.max_diff", config.left_right.max_diff, by);
     scale("semi_global.penalty_large", config.semi_global.penalty_large, by);

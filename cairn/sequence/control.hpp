@@ -19,22 +19,18 @@ inline constexpr std::array kControlMethods{Choice{"off", ControlMethod::off},
 /// The trial of other option values during a sequence.
 struct ControlConfig {
   ControlMethod method = ControlMethod::off;
-  int window = 10;       // frames
-  int hold = 30;         // frames
   float budget = 0.25F;  // share of the frames
-  float lead = 10;       // %
+  // Constants, not options.
+  int window = 10;  // frames; fewest to compare two settings on
+  int hold = 30;    // frames; fewest between two reports or changes
+  float lead = 10;  // %; smallest gain in steadiness of a value that is not the preset's
 };
 template <class V>
 void fields(ControlConfig& c, V&& v) {
-  const auto on = unless("control.method", "off");
-  v("method", c.method, "", "search for steadier option values during a sequence: report them, or set them",
+  v("method", c.method, "", "search for steadier option values: report (watch) or set (tune) them",
     kControlMethods);
-  v("window", c.window, "frames", "smallest number of frames to compare two settings on", range(3, 1000), on);
-  v("hold", c.hold, "frames", "smallest number of frames between two reports or changes", range(1, 10000),
-    on);
-  v("budget", c.budget, "", "share of frames segmented a second time", range(0.0F, 1.0F), on);
-  v("lead", c.lead, "%", "smallest gain in steadiness of a value that is not the preset's",
-    range(0.0F, 100.0F), on);
+  v("budget", c.budget, "", "share of frames segmented a second time", range(0.0F, 1.0F),
+    unless("control.method", "off"));
 }
 
 /// Another value of one option.

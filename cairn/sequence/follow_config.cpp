@@ -29,7 +29,6 @@ bool is_of_following(std::string_view option) {
 
 void set(FollowConfig& config, std::string_view name, std::string_view value) {
   if (option_walk::set_known(config, name, value)) return;
-  if (!is_of_following(name)) set(config.segmentation, name, value);  // the error names the new option
   option_walk::refuse_unknown(name, options(config));
 }
 
@@ -41,18 +40,10 @@ void validate(const FollowConfig& config) {
   validate(config.segmentation);
   option_walk::check_ranges(config);
   const TrackingConfig& t = config.tracking;
-  if (t.low_confidence > t.high_confidence) {
-    throw Error("option tracking.low_confidence: " + option_walk::write(t.low_confidence) +
-                " is more than tracking.high_confidence, " + option_walk::write(t.high_confidence));
-  }
   const LandmarksConfig& l = config.landmarks;
   if (l.min_frames < t.min_hits) {
     throw Error("option landmarks.min_frames: " + option_walk::write(l.min_frames) +
                 " is less than tracking.min_hits, " + option_walk::write(t.min_hits));
-  }
-  if (l.relocation_pairs < l.min_pairs) {
-    throw Error("option landmarks.relocation_pairs: " + option_walk::write(l.relocation_pairs) +
-                " is less than landmarks.min_pairs, " + option_walk::write(l.min_pairs));
   }
 }
 

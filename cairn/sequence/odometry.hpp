@@ -22,20 +22,21 @@ inline constexpr std::array kOdometryMethods{Choice{"off", OdometryMethod::off},
 struct OdometryConfig {
   OdometryMethod method = OdometryMethod::keyframe;
   int max_features = 300;
-  float quality_level = 0.01F;
-  float min_distance = 8.0F;    // px
-  float min_confidence = 0.5F;  // of the disparity of a corner
-  int win_size = 11;            // px
-  int max_level = 3;
-  float fb_max_error = 0.5F;        // px
-  float reprojection_error = 1.5F;  // px
-  int iterations = 200;
-  float confidence = 0.999F;
   int min_inliers = 15;
   float keyframe_inliers = 0.6F;  // share
-  float max_depth_baselines = 40.0F;
-  float sigma_disparity = 0.35F;  // px
-  float sigma_pixel = 0.3F;       // px
+  // Constants, not options.
+  float quality_level = 0.01F;        // smallest strength of a corner, relative to the strongest
+  float min_distance = 8.0F;          // px between corners
+  float min_confidence = 0.5F;        // of the disparity of a corner
+  int win_size = 11;                  // px; side of the window for tracking a corner
+  int max_level = 3;                  // pyramid levels above the image
+  float fb_max_error = 0.5F;          // px; forward-backward error of a tracked corner
+  float reprojection_error = 1.5F;    // px; of an inlier
+  int iterations = 200;               // RANSAC hypotheses
+  float confidence = 0.999F;          // that RANSAC draws a correct hypothesis
+  float max_depth_baselines = 40.0F;  // beyond it corners only constrain the rotation
+  float sigma_disparity = 0.35F;      // px
+  float sigma_pixel = 0.3F;           // px; of the position of a tracked corner
 };
 template <class V>
 void fields(OdometryConfig& c, V&& v) {
@@ -43,29 +44,9 @@ void fields(OdometryConfig& c, V&& v) {
   v("method", c.method, "", "reference of the motion: last keyframe, previous frame, or off",
     kOdometryMethods);
   v("max_features", c.max_features, "", "largest number of corners of a keyframe", range(30, 2000), on);
-  v("quality_level", c.quality_level, "", "smallest strength of a corner, relative to the strongest",
-    range(0.0001F, 0.5F), on);
-  v("min_distance", c.min_distance, "px", "smallest distance between corners", range(2.0F, 50.0F), on);
-  v("min_confidence", c.min_confidence, "", "smallest confidence of the disparity of a corner",
-    range(0.0F, 1.0F), on);
-  v("win_size", c.win_size, "px", "side of the window for tracking a corner", odd_range(5, 41), on);
-  v("max_level", c.max_level, "", "number of pyramid levels above the image for tracking corners",
-    range(0, 5), on);
-  v("fb_max_error", c.fb_max_error, "px", "largest forward-backward error of a tracked corner",
-    off_or(0.1F, 5.0F), on);
-  v("reprojection_error", c.reprojection_error, "px", "largest reprojection error of an inlier corner",
-    range(0.3F, 10.0F), on);
-  v("iterations", c.iterations, "", "largest number of RANSAC hypotheses", range(20, 5000), on);
-  v("confidence", c.confidence, "", "probability that RANSAC draws a correct hypothesis",
-    range(0.9F, 0.9999F), on);
   v("min_inliers", c.min_inliers, "", "smallest number of inlier corners for a motion", range(6, 200), on);
   v("keyframe_inliers", c.keyframe_inliers, "", "share of inlier corners below which a new keyframe starts",
     range(0.2F, 0.95F), when("odometry.method", "keyframe"));
-  v("max_depth_baselines", c.max_depth_baselines, "baselines",
-    "depth beyond which corners only constrain the rotation", off_or(5.0F, 1000.0F), on);
-  v("sigma_disparity", c.sigma_disparity, "px", "standard deviation of a disparity", range(0.05F, 3.0F), on);
-  v("sigma_pixel", c.sigma_pixel, "px", "standard deviation of the position of a tracked corner",
-    range(0.05F, 3.0F), on);
 }
 
 /// Why the motion of a frame is not estimated from its image.

@@ -17,14 +17,12 @@ inline constexpr std::array kRepairMethods{Choice{"off", RepairMethod::off},
 /// The use of tracks for the choice of objects.
 struct RepairConfig {
   RepairMethod method = RepairMethod::objects;
-  float weight = 0.5F;
+  float weight = 0.5F;  // a constant, not an option: of tracks against the scores of the frame
 };
 template <class V>
 void fields(RepairConfig& c, V&& v) {
   v("method", c.method, "", "use of tracks in the choice of objects", kRepairMethods,
     when("fusion.method", "hierarchy"));
-  v("weight", c.weight, "", "weight of tracks against the scores of the current frame", range(0.0F, 1.0F),
-    unless("repair.method", "off"));
 }
 
 /// The probability of each node of the tree to be a whole object, from this frame (`scores`) and from the

@@ -19,36 +19,25 @@ constexpr std::int64_t number(TrackId id) {
 }
 
 struct TrackingConfig {
-  float gate = 11.34F;       // χ² of 3 degrees of freedom, 0.99
-  int min_hits = 3;          // frames
-  int max_age = 15;          // frames
-  float max_hidden = 30.0F;  // s
-  float high_confidence = 0.4F;
+  int min_hits = 3;  // frames
+  int max_age = 15;  // frames
   float low_confidence = 0.1F;
-  float static_noise = 0.02F;       // m/√s
-  float acceleration_noise = 1.0F;  // m/s²
-  float min_speed = 0.05F;          // m/s
-  float appearance_weight = 1.0F;
+  float min_speed = 0.05F;  // m/s
+  // Constants, not options.
+  float gate = 11.34F;              // χ² of 3 degrees of freedom, 0.99
+  float max_hidden = 30.0F;         // s out of view or occluded before a track ends
+  float high_confidence = 0.4F;     // of objects that are matched first and start tracks
+  float static_noise = 0.02F;       // m/√s; random walk of the position of a static object
+  float acceleration_noise = 1.0F;  // m/s²; of a moving object
+  float appearance_weight = 1.0F;   // of colours relative to position and size
 };
 template <class V>
 void fields(TrackingConfig& c, V&& v) {
-  v("gate", c.gate, "χ²", "largest squared Mahalanobis distance between an object and its track",
-    range(1.0F, 100.0F));
   v("min_hits", c.min_hits, "frames", "detections within five frames that confirm a track", range(1, 30));
   v("max_age", c.max_age, "frames", "largest number of misses in view before a track ends", range(1, 300));
-  v("max_hidden", c.max_hidden, "s", "longest time out of view or occluded before a track ends",
-    range(0.0F, 3600.0F));
-  v("high_confidence", c.high_confidence, "",
-    "smallest confidence of objects that are matched first and start tracks", range(0.0F, 1.0F));
   v("low_confidence", c.low_confidence, "", "smallest confidence of objects used for tracking",
-    range(0.0F, 1.0F));
-  v("static_noise", c.static_noise, "m/√s", "random walk of the position of a static object",
-    range(0.0F, 1.0F));
-  v("acceleration_noise", c.acceleration_noise, "m/s²",
-    "standard deviation of the acceleration of a moving object", range(0.01F, 20.0F));
+    range(0.0F, c.high_confidence));
   v("min_speed", c.min_speed, "m/s", "smallest speed of a moving object", range(0.0F, 5.0F));
-  v("appearance_weight", c.appearance_weight, "", "weight of colours relative to position and size",
-    range(0.0F, 10.0F));
 }
 
 /// The centre of an object's visible surface is nearer to the camera than its own centre, by this share of its

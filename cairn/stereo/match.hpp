@@ -40,7 +40,8 @@ struct MatchConfig {
   int num_disparities = 64;  // px, 1 … 1024; candidates min_disparity … min_disparity + this − 1
   int row_band = 0;  // rows, 0 … 8; also searches rows y−k … y+k: for a row offset that varies within a frame
   Prefilter prefilter = Prefilter::none;  // xsobel: for sad and ssd on unequal exposures
-  int prefilter_cap = 31;  // grey levels, 1 … 63; lower: weak edges weigh as much as strong ones
+  /// A constant, not an option: grey levels, 1 … 63; clipping limit of the x-Sobel response, as in OpenCV.
+  int prefilter_cap = 31;
   /// Not an option: the maps that the caller of match() reads. The whole method needs all of them.
   MatchMaps maps = MatchMaps::full;
 };
@@ -57,8 +58,6 @@ void fields(MatchConfig& c, V&& v) {
   v("row_band", c.row_band, "rows", "number of rows searched above and below the epipolar line (vibration)",
     range(0, 8), kWindows);
   v("prefilter", c.prefilter, "", "filter applied to both images before matching", kPrefilters, kWindows);
-  v("prefilter_cap", c.prefilter_cap, "grey levels", "clipping limit of the x-Sobel response", range(1, 63),
-    when("match.prefilter", "xsobel"));
 }
 
 /// Value of Matches::best if no candidate lies inside the right image.

@@ -8,14 +8,12 @@ namespace cairn {
 
 struct SpeckleConfig {
   int size = 50;       // px, 0 … 1000000, −1 = off; higher removes larger islands
-  float range = 1.0F;  // px of disparity, 0 … 64; lower splits slanted surfaces into islands
+  float range = 1.0F;  // a constant, not an option: px of disparity; less splits slanted surfaces
 };
 template <class V>
 void fields(SpeckleConfig& c, V&& v) {
   v("size", c.size, "px", "largest disparity island that is rejected (OpenCV's speckleWindowSize)",
     off_or(0, 1000000));
-  v("range", c.range, "px", "largest disparity step between neighbours within an island", range(0.0F, 64.0F),
-    unless("speckle.size", "-1"));
 }
 
 /// Rejects small islands: components of 4-connected pixels whose neighbours differ by at most `range`, of

@@ -8,7 +8,7 @@ namespace cairn {
 
 Image<float> refine_subpixel(const Matches& matches, const SubpixelConfig& config, const Exec& exec) {
   Image<float> refined(matches.best.size(), exec.pool);
-  const bool refines = config.enabled && !matches.cost_before.empty();
+  const bool refines = config.method != SubpixelMethod::none && !matches.cost_before.empty();
   const kernels::SubpixelKernels& run = kernels::subpixel_kernels(exec);
   parallel_for(exec, refined.height(), 16, [&](int first, int last) {
     for (int y = first; y < last; ++y) {

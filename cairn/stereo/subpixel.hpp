@@ -10,22 +10,21 @@ namespace cairn {
 
 /// The curve fitted to the costs of the winner and its neighbours. parabola: for sums of squares and
 /// correlations, which are round at the minimum. equiangular: two lines of opposite slope, for sums of
-/// absolute values and of bits, which are pointed.
-enum class SubpixelMethod : std::uint8_t { parabola, equiangular };
+/// absolute values and of bits, which are pointed. none: integer disparities.
+enum class SubpixelMethod : std::uint8_t { none, parabola, equiangular };
 
 inline constexpr std::array kSubpixelMethods{
+    Choice<SubpixelMethod>{"none", SubpixelMethod::none},
     Choice<SubpixelMethod>{"parabola", SubpixelMethod::parabola},
     Choice<SubpixelMethod>{"equiangular", SubpixelMethod::equiangular}};
 
 struct SubpixelConfig {
-  bool enabled = true;                               // off: integer disparities
   SubpixelMethod method = SubpixelMethod::parabola;  // according to the shape of the costs: see above
 };
 template <class V>
 void fields(SubpixelConfig& c, V&& v) {
-  v("enabled", c.enabled, "", "interpolation of disparities between integer candidates", Any{});
   v("method", c.method, "", "curve through the costs: equiangular for semi_global, sad and zsad",
-    kSubpixelMethods, when("subpixel.enabled", "true"));
+    kSubpixelMethods);
 }
 
 /// The minimum of the curve through the costs a, m, c at best − 1, best, best + 1:

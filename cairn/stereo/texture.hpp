@@ -9,13 +9,11 @@
 namespace cairn {
 
 struct TextureConfig {
-  int window_size = 9;     // px, odd, 3 … 31; as wide as the correlation window
+  int window_size = 9;     // a constant, not an option: px, odd, 3 … 31; as wide as the correlation window
   float threshold = 4.0F;  // grey levels², 0 … 65025, −1 = off; above the camera's noise
 };
 template <class V>
 void fields(TextureConfig& c, V&& v) {
-  v("window_size", c.window_size, "px", "side of the window of the Moravec operator", odd_range(3, 31),
-    unless("texture.threshold", "-1"));
   v("threshold", c.threshold, "grey levels²", "smallest mean squared difference to the most similar shift",
     off_or(0.0F, 65025.0F));
 }

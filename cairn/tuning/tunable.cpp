@@ -183,7 +183,7 @@ std::vector<std::string> usual_tunables(const Config& config, bool objects) {
   if (config.ground.source != GroundSource::off) add({"ground.margin"});
   add({"objects.min_area", "objects.min_confidence"});
   if (config.fusion.method == FusionMethod::hierarchy) {
-    add({"evidence.*", "superpixels.*"});
+    add({"superpixels.*"});
   } else {
     add({"intensity.*", "disparity.*"});
   }
@@ -191,17 +191,9 @@ std::vector<std::string> usual_tunables(const Config& config, bool objects) {
 }
 
 bool changes_disparities(std::string_view option) {
-  constexpr std::array<std::string_view, 11> kStages{"epipolar_correction.",
-                                                     "match.",
-                                                     "semi_global.",
-                                                     "subpixel.",
-                                                     "left_right.",
-                                                     "uniqueness.",
-                                                     "flatness.",
-                                                     "texture.",
-                                                     "ground.",
-                                                     "speckle.",
-                                                     "evidence."};
+  constexpr std::array<std::string_view, 10> kStages{
+      "epipolar_correction.", "match.",    "semi_global.", "subpixel.", "left_right.",
+      "uniqueness.",          "flatness.", "texture.",     "ground.",   "speckle."};
   return std::any_of(kStages.begin(), kStages.end(),
                      [&](std::string_view stage) { return option.starts_with(stage); });
 }

@@ -222,7 +222,10 @@ void bind_stages(py::module_& m) {
   stage(m, "combine", &combined);
   stage(m, "external_disparity", &external_disparity);
   stage(m, "noise_sigma", &noise_sigma);
-  stage(m, "find_evidence", &find_evidence);
+  stage(
+      m, "find_evidence", +[](View<const Gray> left, const DisparityMap& map, float noise, const Exec& exec) {
+        return find_evidence(left, map, noise, {}, exec);
+      });
   stage(m, "reject_speckles", &reject_speckles);
   stage(
       m, "estimate_confidence",

@@ -23,7 +23,7 @@ def test_options_equal_those_of_the_command(command):
     by_name = {o.name: o for o in options}
     assert by_name["match.num_disparities"].default == 64
     assert by_name["match.cost"].default == "zncc" and by_name["match.cost"].type == "choice"
-    assert by_name["subpixel.enabled"].default is True
+    assert by_name["ground.label_floor"].default is True
     assert by_name["match.num_disparities"].group == "match"
     assert "num_disparities" in repr(by_name["match.num_disparities"])
     paper = {o.name: o.default for o in cairn.options("paper")}
@@ -55,12 +55,13 @@ def test_a_config_is_preset_then_file_then_keywords(tmp_path):
 
 def test_values_may_be_of_any_fitting_type():
     config = cairn.Config(
-        match={"window_size": np.int64(11), "cost": "sad", "method": "window"},
+        "paper",
+        match={"window_size": np.int64(11), "cost": "sad"},
         left_right={"max_diff": np.float32(0.1)},
-        subpixel={"enabled": np.bool_(False)},
+        ground={"label_floor": np.bool_(False)},
     )
     assert config["match.window_size"] == 11 and config["match.cost"] == "sad"
-    assert config["left_right.max_diff"] == 0.1 and config["subpixel.enabled"] is False
+    assert config["left_right.max_diff"] == 0.1 and config["ground.label_floor"] is False
 
 
 @pytest.mark.parametrize("preset", cairn.preset_names())

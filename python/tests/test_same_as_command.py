@@ -100,12 +100,9 @@ REFUSED = [
     ("match.num_disparities=2.5", {"match": {"num_disparities": 2.5}}),
     ("match.num_disparities=1024", {"match": {"num_disparities": 1024}}),
     ("match.cost=sda", {"match": {"cost": "sda"}}),
-    ("speckle.range=nan", {"speckle": {"range": float("nan")}}),
-    ("subpixel.enabled=maybe", {"subpixel": {"enabled": "maybe"}}),
+    ("ground.margin=nan", {"ground": {"margin": float("nan")}}),
+    ("ground.label_floor=maybe", {"ground": {"label_floor": "maybe"}}),
     ("match.cost=sad", {"match": {"cost": "sad"}}),
-    ("texture.window_size=9", {"texture": {"window_size": 9}}),
-    ("match.evidence=winner", {"match": {"evidence": "winner"}}),
-    ("ground.points=1,2,3", {"ground": {"points": [(1, 2, 3)]}}),
 ]
 
 

@@ -72,7 +72,7 @@ TEST_F(BadInput, RefusesUnknownAndOutOfRangeOptions) {
   refuses_set("match.windowsize=9", {"match.windowsize", "match.window_size"});
   refuses_set("match.cost=zncd", {"match.cost", "zncd", "zncc"});
   refuses_set("left_right.max_diff=nan", {"left_right.max_diff", "nan"});
-  refuses_set("subpixel.enabled=maybe", {"subpixel.enabled", "maybe"});
+  refuses_set("ground.label_floor=maybe", {"ground.label_floor", "maybe"});
   refuses_set("match.window_size", {"--set", "match.window_size", "NAME=VALUE"});
   refuses_set("=9", {"--set", "NAME=VALUE"});
   refuses(with("segment", pair, {"--preset", "papre"}), {"papre", "paper"});
@@ -111,21 +111,6 @@ TEST_F(BadInput, RefusesOptionsWithoutEffect) {
   }
   refuses({"config", "--preset", "paper", "--set", "match.method=semi_global", "--set", "match.row_band=2"},
           {"match.row_band has no effect with match.method=semi_global"});
-}
-
-TEST_F(BadInput, RefusesRemovedOptions) {
-  for (const std::string name : {"points", "height", "pitch", "roll"}) {
-    refuses({"config", "--set", "ground." + name + "=1"},
-            {"ground." + name + " was removed", "calibration file"});
-  }
-  refuses({"config", "--set", "match.evidence=full"}, {"match.evidence was removed"});
-  refuses({"config", "--set", "confidence.enabled=true"}, {"confidence.enabled was removed"});
-  refuses({"config", "--set", "background.tolerance=3"}, {"background.tolerance was removed", "constant"});
-  for (const std::string option : {"facets.edge_min", "figure.margin", "group.gap_share"}) {
-    refuses({"config", "--set", option + "=1"}, {option + " was removed", "fitted scores"});
-    write(at("gone.yaml"), "match.num_disparities: 64\n" + option + ": 1\n");
-    refuses({"config", "--config", path("gone.yaml")}, {"gone.yaml: line 2: ", option + " was removed"});
-  }
 }
 
 TEST_F(BadInput, TheEnvironmentsTargetIsCheckedLikeTheOption) {

@@ -143,9 +143,9 @@ TEST_F(Follow, RefusesInvalidSequences) {
   standing(3);
   refuses({"follow", path("nothing")}, {"nothing"});
   refuses({"follow", path("in"), "--set", "tracking.min_hit=2"}, {"did you mean 'tracking.min_hits'?"});
-  refuses({"follow", path("in"), "--set", "tracking.gate=0"}, {"tracking.gate", "1 … 100"});
+  refuses({"follow", path("in"), "--set", "tracking.min_speed=9"}, {"tracking.min_speed", "0 … 5"});
   refuses({"follow", path("in"), "--set", "tracking.low_confidence=0.8"},
-          {"tracking.low_confidence", "tracking.high_confidence"});
+          {"tracking.low_confidence", "0 … 0.4"});
   refuses({"follow", path("in"), "--set", "landmarks.min_frames=2"},
           {"landmarks.min_frames", "tracking.min_hits"});
   refuses({"follow", path("in"), "--set", "odometry.method=off", "--set", "odometry.min_inliers=20"},
@@ -218,15 +218,14 @@ TEST_F(Follow, AScanJudgesTheDisparities) {
 }
 
 TEST_F(Follow, WatchingReportsABetterOptionAndChangesNothing) {
-  standing(30);
+  standing(90);
   // As in tests/unit/sequence/control_test.cpp: one object of the scene is found only if the minimum area is halved.
   const std::vector<std::string> off{"follow", path("in"), "--set", "objects.min_area=4"};
   std::vector<std::string> usual = off;
   usual.insert(usual.end(), {"-o", path("off")});
   ASSERT_EQ(run(usual).code, 0);
   std::vector<std::string> watch = off;
-  for (const char* setting :
-       {"control.method=watch", "control.budget=1", "control.window=3", "control.hold=1"})
+  for (const char* setting : {"control.method=watch", "control.budget=1"})
     watch.insert(watch.end(), {"--set", setting});
   watch.insert(watch.end(), {"-o", path("watch")});
   const Outcome outcome = run(watch);
@@ -250,9 +249,8 @@ TEST_F(Follow, WatchingReportsABetterOptionAndChangesNothing) {
 
 TEST_F(Follow, TuningSetsABetterOption) {
   standing(20);
-  const Outcome outcome =
-      run({"follow", path("in"), "--set", "objects.min_area=60", "--set", "control.method=tune", "--set",
-           "control.budget=1", "--set", "control.window=3", "-o", path("tuned")});
+  const Outcome outcome = run({"follow", path("in"), "--set", "objects.min_area=60", "--set",
+                               "control.method=tune", "--set", "control.budget=1", "-o", path("tuned")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::vector<Json> events = lines_of(at("tuned/events.jsonl"));
   ASSERT_FALSE(events.empty());

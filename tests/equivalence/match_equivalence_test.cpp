@@ -265,15 +265,13 @@ TEST(SubpixelEquivalence, RefinementMeetsItsDefinition) {
           images.pair(),
           {.cost = Cost::sad, .window_size = 3, .min_disparity = 2, .num_disparities = 9, .maps = maps}, {});
       for (const auto& [method_name, method] : kSubpixelMethods) {
-        for (const bool enabled : {false, true}) {
-          const SubpixelConfig config{enabled, method};
-          for (const Target target : supported_targets()) {
-            const Exec exec = Exec::with_threads(1, target);
-            EXPECT_EQ(first_difference(reference::refine_subpixel(matches, config),
-                                       refine_subpixel(matches, config, exec)),
-                      "")
-                << text(size) << " " << method_name << " on " << name(target);
-          }
+        const SubpixelConfig config{method};
+        for (const Target target : supported_targets()) {
+          const Exec exec = Exec::with_threads(1, target);
+          EXPECT_EQ(first_difference(reference::refine_subpixel(matches, config),
+                                     refine_subpixel(matches, config, exec)),
+                    "")
+              << text(size) << " " << method_name << " on " << name(target);
         }
       }
     }

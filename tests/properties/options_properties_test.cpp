@@ -42,7 +42,7 @@ std::vector<Config> starts() {
     const Config config = Config::preset(preset);
     all.push_back(config);
     for (const auto& [option, value] :
-         {std::pair{"subpixel.enabled", "false"}, std::pair{"left_right.max_diff", "-1"},
+         {std::pair{"subpixel.method", "none"}, std::pair{"left_right.max_diff", "-1"},
           std::pair{"speckle.size", "-1"}, std::pair{"ground.source", "off"},
           std::pair{"match.method", "window"}, std::pair{"match.method", "semi_global"}}) {
       all.push_back(config);

@@ -160,7 +160,7 @@ Image<float> refine_subpixel(const Matches& matches, const SubpixelConfig& confi
     for (int x = 0; x < out.width(); ++x) {
       const std::int16_t best = matches.best(x, y);
       out(x, y) = best == kNoMatch ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(best);
-      if (best == kNoMatch || !config.enabled || matches.cost_before.empty()) continue;
+      if (best == kNoMatch || config.method == SubpixelMethod::none || matches.cost_before.empty()) continue;
       const float a = matches.cost_before(x, y), m = matches.cost(x, y), c = matches.cost_after(x, y);
       const float rise = config.method == SubpixelMethod::parabola ? (a - m) + (c - m) : std::max(a, c) - m;
       if (rise > 0 && rise < kNoCost) out(x, y) += 0.5F * (a - c) / rise;

@@ -71,19 +71,6 @@ TEST_F(ConfigFiles, APresetIsWhereTheOptionsStart) {
   EXPECT_TRUE(has(refused("preset: [paper]\n"), {"preset"}));
 }
 
-TEST_F(ConfigFiles, OptionsMovedToTheCalibrationAreReportedAsSuch) {
-  EXPECT_TRUE(has(refused("ground:\n  points: [[1, 2, 3, 4], [5.5, 6, 7, 8]]\n"),
-                  {"line 2", "ground.points", "ground_points in the calibration"}));
-  EXPECT_TRUE(has(refused("ground.height: 2\n"), {"line 1", "camera_height"}));
-}
-
-TEST_F(ConfigFiles, OptionsOfRemovedStagesAreRefusedWithTheirLine) {
-  EXPECT_TRUE(has(refused("facets:\n  edge_min: 2\n"), {"line 2", "facets.edge_min was removed", "scores"}));
-  EXPECT_TRUE(
-      has(refused("match.window_size: 9\nfigure.margin: 1\n"), {"line 2", "figure.margin was removed"}));
-  EXPECT_TRUE(has(refused("\ngroup:\n  step: 20\n  min_area: 1\n"), {"line 3", "group.step was removed"}));
-}
-
 std::vector<std::string> active_values_of(const Config& config) {
   std::vector<std::string> values;
   for (const OptionInfo& option : active_options(config)) values.push_back(option.name + "=" + option.value);

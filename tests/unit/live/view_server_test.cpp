@@ -923,7 +923,6 @@ TEST(ViewServer, RefusesValuesAndNamesTheExpectation) {
   EXPECT_TRUE(has(refusal("match.num_disparities", 32.5), "found 32.5, expected a whole number"));
   EXPECT_TRUE(has(refusal("match.num_disparities", 1e300), "expected a whole number"));
   EXPECT_TRUE(has(refusal("match.method", "magic"), "found 'magic', expected one of window|semi_global"));
-  EXPECT_TRUE(has(refusal("subpixel.enabled", 1), "found 1, expected true or false"));
   EXPECT_TRUE(has(refusal("match.num_disparites", 32), "match.num_disparities"));  // the nearest
   EXPECT_TRUE(has(refusal("live.record", true), "not an option of this run"));
   EXPECT_TRUE(has(refusal("live.pause", 1), "found 1, expected true or false"));

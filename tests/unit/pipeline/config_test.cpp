@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/config.hpp>
+#include <cairn/sequence/follow_config.hpp>
 #include <set>
 #include <string>
 
@@ -46,11 +47,11 @@ TEST(Options, AreSetByTheirFullName) {
   set(config, "match.window_size", "15");
   set(config, "match.cost", "sad");
   set(config, "uniqueness.ratio", "-1");
-  set(config, "subpixel.enabled", "false");
+  set(config, "subpixel.method", "none");
   EXPECT_EQ(config.match.window_size, 15);
   EXPECT_EQ(config.match.cost, Cost::sad);
   EXPECT_EQ(config.uniqueness.ratio, -1);
-  EXPECT_FALSE(config.subpixel.enabled);
+  EXPECT_EQ(config.subpixel.method, SubpixelMethod::none);
 }
 
 TEST(Options, ReadBackWhatTheyWrite) {
@@ -84,7 +85,11 @@ TEST(Options, RefuseValuesOutOfRangeAndNameTheRange) {
   EXPECT_NE(refusal("match.window_size", "9.5").find("a whole number"), std::string::npos);
   EXPECT_NE(refusal("match.window_size", "").find("a whole number"), std::string::npos);
   EXPECT_NE(refusal("match.cost", "ncc").find("sad|ssd|zsad|"), std::string::npos);
-  EXPECT_NE(refusal("subpixel.enabled", "maybe").find("true or false"), std::string::npos);
+  EXPECT_NE(refusal("ground.label_floor", "maybe").find("true or false"), std::string::npos);
+}
+
+TEST(Options, AreFewEnoughToRead) {
+  EXPECT_LE(options(FollowConfig{}).size(), 50U);
 }
 
 TEST(Options, NameTheNearestKnownOneForAnUnknown) {
@@ -146,14 +151,10 @@ TEST(ActiveOptions, InactiveOnesAreRefusedWithTheOptionToSetFirst) {
       EXPECT_NE(with.find("; set " + required), std::string::npos) << message;
       EXPECT_TRUE(named(all, required).active) << message;
     }
-    EXPECT_GT(refused, 5) << preset;
+    EXPECT_GT(refused, 4) << preset;
   }
   EXPECT_EQ(message_of([] { require_active({}, "match.cost"); }),
             "match.cost has no effect with match.method=semi_global; set match.method=window first");
-  EXPECT_EQ(message_of([] { require_active({}, "match.prefilter_cap"); }),
-            "match.prefilter_cap has no effect with match.method=semi_global; set match.method=window first");
-  EXPECT_EQ(message_of([] { require_active({}, "texture.window_size"); }),
-            "texture.window_size has no effect with texture.threshold=-1; set texture.threshold first");
   EXPECT_EQ(message_of([] { require_active(Config::paper(), "superpixels.count"); }),
             "superpixels.count has no effect with fusion.method=overlap; set fusion.method=hierarchy first");
   EXPECT_EQ(message_of([] { require_active({}, "objects.max_area"); }),
@@ -161,22 +162,8 @@ TEST(ActiveOptions, InactiveOnesAreRefusedWithTheOptionToSetFirst) {
 }
 
 TEST(ActiveOptions, OfASingleStageAreThoseOfItsOwnSections) {
-  EXPECT_NO_THROW(require_active({}, "intensity.sigma_min", {"intensity"}));
-  EXPECT_THROW(require_active({}, "texture.window_size", {"texture"}), Error);
+  EXPECT_NO_THROW(require_active({}, "intensity.deviation_max", {"intensity"}));
   EXPECT_THROW(require_active({}, "match.cost", {"match", "semi_global"}), Error);
-}
-
-TEST(GoneOptions, NameTheirReplacement) {
-  EXPECT_EQ(refusal("ground.height", "1.5"),
-            "option ground.height was removed: it is now camera_height in the calibration file "
-            "(docs/formats.md)");
-  EXPECT_NE(refusal("ground.points", "1,2,3,4").find("ground_points in the calibration"), std::string::npos);
-  EXPECT_NE(refusal("match.evidence", "full").find("was removed"), std::string::npos);
-  EXPECT_NE(refusal("background.tolerance", "1").find("a constant of its stage"), std::string::npos);
-  for (const char* option : {"facets.edge_min", "figure.margin", "figure.skirting", "group.step"}) {
-    EXPECT_EQ(refusal(option, "1"),
-              "option " + std::string(option) + " was removed: fitted scores replaced its stage");
-  }
 }
 
 TEST(Validate, AcceptsThePresets) {

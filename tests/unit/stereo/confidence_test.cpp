@@ -156,7 +156,7 @@ TEST(Confidence, IsComputedWhicheverChecksAreOff) {
   const Dots dots;
   Config config = sixteen_disparities();
   config.left_right.max_diff = -1;
-  config.subpixel.enabled = false;
+  config.subpixel.method = SubpixelMethod::none;
   EXPECT_EQ(segment(dots.pair(), std::nullopt, config, {}).confidence.size(), dots.left.size());
 }
 

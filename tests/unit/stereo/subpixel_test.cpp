@@ -24,8 +24,8 @@ Matches pixel(float before, float least, float after, std::int16_t best = 7) {
   return matches;
 }
 
-float refined(const Matches& matches, bool enabled = true) {
-  return refine_subpixel(matches, {.enabled = enabled}, {})(0, 0);
+float refined(const Matches& matches, SubpixelMethod method = SubpixelMethod::parabola) {
+  return refine_subpixel(matches, {.method = method}, {})(0, 0);
 }
 
 TEST(Subpixel, FindsTheVertexOfAnExactParabola) {
@@ -69,7 +69,7 @@ TEST(Subpixel, KeepsTheWholePixelWhereTheCostsAreFlat) {
 }
 
 TEST(Subpixel, KeepsTheWholePixelWhenSwitchedOffOrWithoutEvidence) {
-  EXPECT_EQ(refined(pixel(28, 4, 12), false), 7.0F);
+  EXPECT_EQ(refined(pixel(28, 4, 12), SubpixelMethod::none), 7.0F);
   Matches winner_only;
   winner_only.best = one<std::int16_t>(7);
   winner_only.cost = one(4.0F);

@@ -70,7 +70,7 @@ TEST(Tunable, TakesItsLimitsFromTheFieldsOfItsStage) {
   EXPECT_TRUE(max_diff.minus_one_is_off);
   EXPECT_EQ(max_diff.of_presets, (Strings{"2", "1"}));
   EXPECT_EQ(named("left_right.method").choices, (Strings{"true", "vote"}));
-  EXPECT_EQ(named("subpixel.enabled").choices, (Strings{"false", "true"}));
+  EXPECT_EQ(named("ground.label_floor").choices, (Strings{"false", "true"}));
 }
 
 TEST(Tunable, EveryOptionIsOne) {
@@ -92,8 +92,7 @@ TEST(Tunable, OnlyActiveOptionsAreVaried) {
 TEST(Tunable, InactiveOptionsAreVariedOnlyWithTheOptionThatActivatesThem) {
   EXPECT_FALSE(has(names_of(tunables({"texture.*"}, Config::paper())), "match.cost"));
   const Strings all = names_of(tunables({"match.*"}, Config{}));
-  EXPECT_TRUE(has(all, "match.cost"));           // active with match.method=window, which is tunable
-  EXPECT_TRUE(has(all, "match.prefilter_cap"));  // and with match.prefilter=xsobel
+  EXPECT_TRUE(has(all, "match.cost"));  // active with match.method=window, which is tunable
   for (const Strings& patterns : {Strings{"match.cost"}, Strings{"left_right.*", "intensity.*"}}) {
     try {
       (void)tunables(patterns, Config{});
@@ -130,9 +129,8 @@ TEST(Tunable, TheUsualOnesTakePartInWhatTheConfigComputes) {
       const bool hierarchy = config.fusion.method == FusionMethod::hierarchy;
       EXPECT_EQ(has(names, "semi_global.penalty_small"), semi_global) << preset;
       EXPECT_EQ(has(names, "match.window_size"), !semi_global) << preset;
-      EXPECT_EQ(has(names, "evidence.gradient_min"), objects && hierarchy) << preset;
       EXPECT_EQ(has(names, "superpixels.count"), objects && hierarchy) << preset;
-      EXPECT_EQ(has(names, "intensity.sigma_min"), objects && !hierarchy) << preset;
+      EXPECT_EQ(has(names, "intensity.deviation_max"), objects && !hierarchy) << preset;
       EXPECT_FALSE(has(names, "match.num_disparities")) << preset;
       if (objects) continue;
       for (const std::string& name : names) EXPECT_TRUE(changes_disparities(name)) << name;
@@ -200,7 +198,7 @@ double log_square(double value, double best) {
 
 /// A quadratic bowl in the logarithms of two options, the same for two frames, and a choice.
 std::vector<Loss> bowl(const std::vector<Setting>& settings) {
-  double loss = 1 + log_square(value_of(settings, "evidence.gradient_min"), 4) +
+  double loss = 1 + log_square(value_of(settings, "semi_global.penalty_edge"), 4) +
                 log_square(value_of(settings, "speckle.size"), 20);
   for (const Setting& setting : settings) {
     if (setting.option == "left_right.method" && setting.value == "true") loss += 1;
@@ -210,7 +208,7 @@ std::vector<Loss> bowl(const std::vector<Setting>& settings) {
 
 const std::vector<Tunable>& bowl_tunables() {
   static const auto all =
-      tunables({"evidence.gradient_min", "speckle.size", "left_right.method", "ground.margin"});
+      tunables({"semi_global.penalty_edge", "speckle.size", "left_right.method", "ground.margin"});
   return all;
 }
 
@@ -222,7 +220,7 @@ SearchResult search_bowl(const SearchConfig& config) {
 TEST(Search, FindsTheMinimumOfABowlAndAChoice) {
   const SearchResult found = search_bowl({});
   EXPECT_EQ(found.end, SearchEnd::converged);
-  EXPECT_NEAR(value_of(found.best, "evidence.gradient_min"), 4, 0.6);
+  EXPECT_NEAR(value_of(found.best, "semi_global.penalty_edge"), 4, 0.6);
   EXPECT_NEAR(value_of(found.best, "speckle.size"), 20, 3);
   EXPECT_TRUE(std::find(found.best.begin(), found.best.end(), Setting{"left_right.method", "vote"}) !=
               found.best.end());
@@ -302,28 +300,28 @@ TEST(Search, StoppedAtAnyTimeItReturnsTheBestSoFar) {
 }
 
 TEST(Search, KeepsNothingWithMoreFaultsThanTheStart) {
-  const auto all = tunables({"evidence.gradient_min"});
+  const auto all = tunables({"semi_global.penalty_edge"});
   const SearchResult found = search(all, settings_of(Config{}, all),
                                     [](const std::vector<Setting>& settings) -> std::vector<Loss> {
-                                      const double least = value_of(settings, "evidence.gradient_min");
+                                      const double least = value_of(settings, "semi_global.penalty_edge");
                                       return {{log_square(least, 4), 1, least > 3 ? 2 : 1}};
                                     },
                                     {});
-  EXPECT_GT(value_of(found.best, "evidence.gradient_min"), 2.5);
-  EXPECT_LE(value_of(found.best, "evidence.gradient_min"), 3);
+  EXPECT_GT(value_of(found.best, "semi_global.penalty_edge"), 2.5);
+  EXPECT_LE(value_of(found.best, "semi_global.penalty_edge"), 3);
 }
 
 TEST(Search, SkipsContradictorySettings) {
-  const auto all = tunables({"evidence.gradient_min"});
+  const auto all = tunables({"semi_global.penalty_edge"});
   const SearchResult found =
       search(all, settings_of(Config{}, all),
              [](const std::vector<Setting>& settings) -> std::vector<Loss> {
-               const double least = value_of(settings, "evidence.gradient_min");
+               const double least = value_of(settings, "semi_global.penalty_edge");
                const double loss = least > 2 ? std::numeric_limits<double>::infinity() : log_square(least, 1);
                return {{loss, 1}};
              },
              {});
-  EXPECT_NEAR(value_of(found.best, "evidence.gradient_min"), 1, 0.1);
+  EXPECT_NEAR(value_of(found.best, "semi_global.penalty_edge"), 1, 0.1);
 }
 
 TEST(ClearlyBetter, RequiresMoreThanTheGainOfOneFrame) {
