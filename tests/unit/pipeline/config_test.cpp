@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/config.hpp>
-#include <cairn/sequence/follow_config.hpp>
 #include <set>
 #include <string>
 
@@ -88,10 +87,6 @@ TEST(Options, RefuseValuesOutOfRangeAndNameTheRange) {
   EXPECT_NE(refusal("ground.label_floor", "maybe").find("true or false"), std::string::npos);
 }
 
-TEST(Options, AreFewEnoughToRead) {
-  EXPECT_LE(options(FollowConfig{}).size(), 50U);
-}
-
 TEST(Options, NameTheNearestKnownOneForAnUnknown) {
   EXPECT_NE(refusal("match.windowsize", "9").find("did you mean 'match.window_size'"), std::string::npos);
   EXPECT_NE(message_of([] { (void)Config::preset("papr"); }).find("'paper'"), std::string::npos);
@@ -153,17 +148,17 @@ TEST(ActiveOptions, InactiveOnesAreRefusedWithTheOptionToSetFirst) {
     }
     EXPECT_GT(refused, 4) << preset;
   }
-  EXPECT_EQ(message_of([] { require_active({}, "match.cost"); }),
+  EXPECT_EQ(message_of([] { require_active(Config{}, "match.cost"); }),
             "match.cost has no effect with match.method=semi_global; set match.method=window first");
   EXPECT_EQ(message_of([] { require_active(Config::paper(), "superpixels.count"); }),
             "superpixels.count has no effect with fusion.method=overlap; set fusion.method=hierarchy first");
-  EXPECT_EQ(message_of([] { require_active({}, "objects.max_area"); }),
+  EXPECT_EQ(message_of([] { require_active(Config{}, "objects.max_area"); }),
             "objects.max_area has no effect with fusion.method=hierarchy; set fusion.method=overlap first");
 }
 
 TEST(ActiveOptions, OfASingleStageAreThoseOfItsOwnSections) {
-  EXPECT_NO_THROW(require_active({}, "intensity.deviation_max", {"intensity"}));
-  EXPECT_THROW(require_active({}, "match.cost", {"match", "semi_global"}), Error);
+  EXPECT_NO_THROW(require_active(Config{}, "intensity.deviation_max", {"intensity"}));
+  EXPECT_THROW(require_active(Config{}, "match.cost", {"match", "semi_global"}), Error);
 }
 
 TEST(Validate, AcceptsThePresets) {

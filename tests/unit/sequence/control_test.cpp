@@ -24,6 +24,10 @@ ArmScore score(std::vector<float> of_arm, std::vector<float> of_present, const s
   return {{"superpixels.count", value}, std::move(of_arm), std::move(of_present)};
 }
 
+TEST(Options, AreFewEnoughToRead) {
+  EXPECT_LE(options(FollowConfig{}).size(), 50U);
+}
+
 TEST(Arms, AreReadByTheirConfigurationAndChangeIt) {
   const Config config;
   const std::vector<Arm> arms = arms_of(config, kSize);
