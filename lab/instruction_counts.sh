@@ -46,7 +46,7 @@ counts() {
     >"$scratch/out" 2>&1 || { cat "$scratch/out" >&2; return 1; }
   # A function of more than one source file has a line for each, and an overload one of its own: the largest counts.
   callgrind_annotate --inclusive=yes --threshold=100 "$scratch/$preset" |
-    sed -nE 's!^ *([0-9,]+) .*cairn/(image|matching|disparity|regions|scene|grouping|objects|pipeline)/[a-z_]+\.[ch]pp:cairn::([a-z_0-9]+)\(.*!\3 \1!p' |
+    sed -nE 's!^ *([0-9,]+) .*cairn/(image|stereo|regions|scene|objects|pipeline)/[a-z_]+\.[ch]pp:cairn::([a-z_0-9]+)\(.*!\3 \1!p' |
     tr -d , | sort -k1,1 -k2,2nr | awk -v preset="$preset" '$1 != last { print preset, $1, $2; last = $1 }'
 }
 

@@ -92,6 +92,7 @@ Config Config::preset(std::string_view name) {
 // Fitted by lab/search_paper.cpp.
 Config Config::paper() {
   Config c;
+  c.pipeline.method = Method::paper;
   c.epipolar_correction = {};
   c.match = {};
   c.subpixel = {};
@@ -107,7 +108,6 @@ Config Config::paper() {
   c.disparity.mean_difference_max = 1.5F;
   c.disparity.deviation_max = 1.5F;
   c.disparity.min_region_area = 1.0F;
-  c.fusion = {};
   c.objects = {.min_area = 0.5F};
   return c;
 }

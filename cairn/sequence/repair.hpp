@@ -22,7 +22,7 @@ struct RepairConfig {
 template <class V>
 void fields(RepairConfig& c, V&& v) {
   v("method", c.method, "", "use of tracks in the choice of objects", kRepairMethods,
-    when("fusion.method", "hierarchy"));
+    when("pipeline.method", "region_tree"));
   v("weight", c.weight, "", "weight of tracks against the scores of the current frame", range(0.0F, 1.0F),
     unless("repair.method", "off"));
 }

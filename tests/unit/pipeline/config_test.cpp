@@ -154,10 +154,12 @@ TEST(ActiveOptions, InactiveOnesAreRefusedWithTheOptionToSetFirst) {
             "match.prefilter_cap has no effect with match.method=semi_global; set match.method=window first");
   EXPECT_EQ(message_of([] { require_active({}, "texture.window_size"); }),
             "texture.window_size has no effect with texture.threshold=-1; set texture.threshold first");
-  EXPECT_EQ(message_of([] { require_active(Config::paper(), "superpixels.count"); }),
-            "superpixels.count has no effect with fusion.method=overlap; set fusion.method=hierarchy first");
-  EXPECT_EQ(message_of([] { require_active({}, "objects.max_area"); }),
-            "objects.max_area has no effect with fusion.method=hierarchy; set fusion.method=overlap first");
+  EXPECT_EQ(
+      message_of([] { require_active(Config::paper(), "superpixels.count"); }),
+      "superpixels.count has no effect with pipeline.method=paper; set pipeline.method=region_tree first");
+  EXPECT_EQ(
+      message_of([] { require_active({}, "objects.max_area"); }),
+      "objects.max_area has no effect with pipeline.method=region_tree; set pipeline.method=paper first");
 }
 
 TEST(ActiveOptions, OfASingleStageAreThoseOfItsOwnSections) {
