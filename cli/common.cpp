@@ -268,8 +268,8 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
 
 Frame segment_frame(LoadedFrame& loaded, const Exec& exec) {
   if (loaded.given) {
-    return segment(loaded.left.gray, loaded.left.rgb, std::move(*loaded.given), loaded.rig, loaded.config,
-                   exec);
+    return segment({{loaded.left.gray, loaded.left.rgb}, {}, std::move(*loaded.given)},
+                   {loaded.rig, loaded.config, exec});
   }
   return segment(StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config,
                  exec);
@@ -283,7 +283,7 @@ std::string remark_on_calibration(const LoadedFrame& loaded) {
 }
 
 Stopwatch::Stopwatch(Exec& exec) : exec_(exec) {
-  exec_.observe = [this](std::string_view stage, const Artifact&, double milliseconds) {
+  exec_.observe = [this](std::string_view stage, const StageResult&, double milliseconds) {
     times_.push_back({std::string(stage), milliseconds});
   };
 }

@@ -52,7 +52,7 @@ void check_ply(const std::string& output, const LoadedFrame& frame) {
   if (!frame.rig) throw Error("--ply: found no calibration, expected --calib (a point cloud is in metres)");
 }
 
-std::string describe(const SceneDisparity& scene, const LoadedFrame& loaded, double milliseconds,
+std::string describe(const StereoResult& scene, const LoadedFrame& loaded, double milliseconds,
                      const Exec& exec) {
   const Image<Reject>& reject = scene.disparity.reject;
   std::int64_t valid = 0;
@@ -90,7 +90,7 @@ int estimate(const DisparityOptions& options) {
   if (!options.ply.empty()) check_ply(options.ply, loaded);
   keep_inputs({options.output, options.confidence, options.view, options.ply}, frames.front(), options.input);
   const Stopwatch watch(exec);
-  const SceneDisparity scene = estimate_disparity(
+  const StereoResult scene = estimate_disparity(
       StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config, exec);
   if (!options.output.empty()) io::save_disparity(options.output, scene.disparity.disparity_px);
   if (!options.confidence.empty()) io::save_confidence(options.confidence, scene.confidence);

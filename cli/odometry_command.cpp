@@ -121,7 +121,7 @@ int estimate(const OdometryOptions& options) {
     const std::optional<io::SequenceFrame> frame = source->next();
     if (!frame) break;
     progress.at(run.frames, frame->name);
-    const SceneDisparity scene = estimate_disparity(
+    const StereoResult scene = estimate_disparity(
         StereoPair::from(frame->left.gray, frame->right, frame->left.rgb), rig, config.segmentation, exec);
     const auto start = Clock::now();
     if (!before) {

@@ -89,7 +89,7 @@ void run_paper(const StereoPair& pair, const std::optional<StereoRig>& rig, cons
               objects.list.size());
 }
 
-/// As in cairn/pipeline/hierarchy.cpp.
+/// As in cairn/pipeline/region_tree.cpp.
 void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, const Config& config,
                  const Exec& exec) {
   // [stages_by_hierarchy]
@@ -157,7 +157,7 @@ int main(int argc, char** argv) try {
     config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
     validate(config, pair.size(), calibration.rig.has_value());  // after this no stage can fail
     std::printf("%s\n", preset);
-    const auto run_stages = config.fusion.method == FusionMethod::overlap ? run_paper : run_default;
+    const auto run_stages = config.pipeline.method == Method::paper ? run_paper : run_default;
     run_stages(pair, calibration.rig, config, Exec::with_threads(0));
   }
 } catch (const cairn::Error& error) {

@@ -37,7 +37,7 @@ Frame segment_without_saturated(const StereoPair& pair, const std::optional<Ster
   const Image<Reject> saturated = reject_saturated(pair.left(), exec);
   DisparityMap disparity =
       combine(refine_subpixel(matches, config.subpixel, exec), {inconsistent, ambiguous, saturated}, exec);
-  return segment(pair.left(), pair.left_rgb(), std::move(disparity), rig, config, exec);
+  return segment({{pair.left(), pair.left_rgb()}, {}, std::move(disparity)}, {rig, config, exec});
 }
 // [/check]
 

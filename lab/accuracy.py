@@ -49,7 +49,7 @@ ABLATIONS = {
     "input=grey": "images without colour",
     "superpixels.count=125": "half as many superpixels",
     "superpixels.count=500": "twice as many superpixels",
-    "fusion.method=overlap": "paper: the two segmentations and their overlap",
+    "pipeline.method=paper": "paper: the two segmentations and their overlap",
     "objects.min_confidence=0": "paper: every remaining region is an object",
     "objects.min_area=0.5": "paper",
 }

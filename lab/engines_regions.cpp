@@ -176,7 +176,7 @@ std::vector<std::pair<std::string, double>> stage_times(const Scene& scene, cons
   std::size_t stage = 0;
   double last = 0;
   double rest = 0;
-  exec.observe = [&](std::string_view name, const Artifact&, double) {
+  exec.observe = [&](std::string_view name, const StageResult&, double) {
     const double time = processor_ms() - last;
     if (stage == least.size()) least.emplace_back(name, time);
     least[stage].second = std::min(least[stage].second, time);

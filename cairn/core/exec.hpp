@@ -8,36 +8,28 @@
 #include <functional>
 #include <memory>
 #include <string_view>
-#include <variant>
-#include <vector>
+#include <typeinfo>
 
 namespace cairn {
 
-enum class Reject : std::uint16_t;  // defined in stereo/reject.hpp; the rest next to its stage
-struct Matches;
-struct DisparityMap;
-struct Ground;
-struct Background;
-struct Superpixels;
-struct ObjectHint;
-struct MergeTree;
-struct ChosenObjects;
-struct Segmentation;
-struct Fusion;
-struct Objects;
-struct LeftOut;
-enum class Space : std::uint8_t;  // defined in objects/space.hpp
-
 /// The result of a stage, as passed to an observer: borrowed, valid during the call only.
-using Artifact =
-    std::variant<const Matches*, const float*, const Image<float>*, const Image<Reject>*, const DisparityMap*,
-                 const Ground*, const Image<std::uint8_t>*, const Image<std::uint16_t>*, const Background*,
-                 const Superpixels*, const Image<ObjectHint>*, const MergeTree*, const ChosenObjects*,
-                 const Segmentation*, const Fusion*, const Objects*, const Image<Space>*,
-                 const std::vector<LeftOut>*>;
+class StageResult {
+ public:
+  template <class T>
+  explicit StageResult(const T& value) : type_(typeid(T)), value_(&value) {}
+  /// nullptr if the stage returns another type.
+  template <class T>
+  [[nodiscard]] const T* as() const {
+    return type_ == typeid(T) ? static_cast<const T*>(value_) : nullptr;
+  }
+
+ private:
+  const std::type_info& type_;
+  const void* value_;
+};
 
 /// Called after each stage on the calling thread: name of the stage (its function's), result, time.
-using Observer = std::function<void(std::string_view stage, const Artifact& artifact, double milliseconds)>;
+using Observer = std::function<void(std::string_view stage, const StageResult& result, double milliseconds)>;
 
 /// The instruction set of the kernels. Never changes a result bit.
 enum class Target : std::uint8_t { best, scalar, sse4, avx2, avx512, neon };

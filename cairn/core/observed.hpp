@@ -18,7 +18,7 @@ class Observed {
   T operator()(std::string_view stage, T value) {
     if (observe_) {
       const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start_;
-      observe_(stage, Artifact(static_cast<const T*>(&value)), elapsed.count());
+      observe_(stage, StageResult(value), elapsed.count());
       restart();  // excludes the time of the observer
     }
     return value;

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 constexpr auto kNotice = 50ms;
 
 Exec noting_stages(Exec exec, std::vector<io::StageTime>& stages) {
-  exec.observe = [&stages](std::string_view stage, const Artifact&, double ms) {
+  exec.observe = [&stages](std::string_view stage, const StageResult&, double ms) {
     stages.push_back({std::string(stage), ms});
   };
   if (exec.pool.bytes() == 0) exec.pool = Pool::make();

@@ -2,28 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <array>
-#include <cairn/core/fields.hpp>
 #include <cairn/regions/region_graph.hpp>
 #include <vector>
 
 namespace cairn {
-
-/// The method that makes objects of regions. overlap: the paper's, intensity regions joined by the disparity
-/// region that they overlap most. hierarchy: superpixels are merged into a tree of regions, and the likeliest
-/// objects in it are chosen.
-enum class FusionMethod : std::uint8_t { overlap, hierarchy };
-inline constexpr std::array kFusionMethods{Choice<FusionMethod>{"overlap", FusionMethod::overlap},
-                                           Choice<FusionMethod>{"hierarchy", FusionMethod::hierarchy}};
-
-struct FusionConfig {
-  FusionMethod method = FusionMethod::overlap;  // overlap: as in the paper
-};
-template <class V>
-void fields(FusionConfig& c, V&& v) {
-  v("method", c.method, "", "overlap: the paper's method; hierarchy: likeliest objects of a region tree",
-    kFusionMethods);
-}
 
 /// The intensity regions of each fused region, the candidates for objects.
 struct Fusion {

@@ -236,8 +236,10 @@ Rgb mean_colour(const std::array<std::int64_t, 3>& sum, std::int64_t pixels) {
   return {mean(0), mean(1), mean(2)};
 }
 
-int weakest_edge(float noise_sigma) {
-  return static_cast<int>(kEdgeMin + kEdgeNoiseFactor * noise_sigma);
+Inputs inputs_of(View<const RegionId> candidates, std::size_t count, const DisparityMap& disparity,
+                 const LeftImage& left) {
+  const auto weakest_edge = static_cast<int>(kEdgeMin + kEdgeNoiseFactor * left.noise_sigma);
+  return {candidates, count, disparity.disparity_px, left.gray, left.rgb, weakest_edge};
 }
 
 float confidence_of(const Object& object, Size image) {
@@ -364,10 +366,9 @@ Objects measure_those(const Inputs& in, MayBe may_be, Is is, const Exec& exec) {
 }  // namespace
 
 Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_background,
-                const DisparityMap& disparity, View<const Gray> left, View<const Rgb> left_rgb,
-                float noise_sigma, const ObjectsConfig& config, const Exec& exec) {
-  const Inputs in{candidates, is_background.size(),     disparity.disparity_px, left,
-                  left_rgb,   weakest_edge(noise_sigma)};
+                const DisparityMap& disparity, const LeftImage& left, const ObjectsConfig& config,
+                const Exec& exec) {
+  const Inputs in = inputs_of(candidates, is_background.size(), disparity, left);
   const auto may_be = [&](std::size_t region, const Outline& outline) {
     return !is_background[region] && may_be_object(outline, candidates.size(), config);
   };
@@ -378,8 +379,8 @@ Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_bac
 }
 
 Objects measure(View<const RegionId> chosen, const std::vector<float>& scores, const DisparityMap& disparity,
-                View<const Gray> left, View<const Rgb> left_rgb, float noise_sigma, const Exec& exec) {
-  const Inputs in{chosen, scores.size(), disparity.disparity_px, left, left_rgb, weakest_edge(noise_sigma)};
+                const LeftImage& left, const Exec& exec) {
+  const Inputs in = inputs_of(chosen, scores.size(), disparity, left);
   const auto may_be = [&](std::size_t region, const Outline&) { return scores[region] > 0; };
   const auto is = [&](Candidate& candidate) {
     candidate.object->confidence = scores[candidate.region];

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cairn/core/fields.hpp>
+#include <cairn/core/left_image.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cairn/regions/region_graph.hpp>
 #include <cairn/stereo/disparity_map.hpp>
@@ -21,7 +22,7 @@ template <class V>
 void fields(ObjectsConfig& c, V&& v) {
   v("min_area", c.min_area, "% of the image", "smallest area of an object", range(0.0F, 100.0F));
   v("max_area", c.max_area, "% of the image", "largest area of an object", range(0.0F, 100.0F),
-    when("fusion.method", "overlap"));
+    when("pipeline.method", "paper"));
   v("min_confidence", c.min_confidence, "", "smallest confidence of an object", range(0.0F, 1.0F));
 }
 
@@ -76,14 +77,14 @@ struct Objects {
 ///
 /// Confidence is a logistic function of the logarithm of the mask's share of the image, of edge_share and of
 /// cut_share; a valid_share below one half also lowers it. Its four numbers were fitted to objects of the
-/// default preset; see docs/stages/objects.md. `noise_sigma`: of the left image; edges are steps above it.
+/// default preset; see docs/stages/objects.md. Edges are steps above the noise of `left`.
 Objects measure(View<const RegionId> candidates, const std::vector<bool>& is_background,
-                const DisparityMap& disparity, View<const Gray> left, View<const Rgb> left_rgb,
-                float noise_sigma, const ObjectsConfig& config, const Exec& exec);
+                const DisparityMap& disparity, const LeftImage& left, const ObjectsConfig& config,
+                const Exec& exec);
 
 /// The same for chosen regions: region i is an object of confidence scores[i], whatever its size and
 /// position, unless that is 0 or the region has no valid pixel.
 Objects measure(View<const RegionId> chosen, const std::vector<float>& scores, const DisparityMap& disparity,
-                View<const Gray> left, View<const Rgb> left_rgb, float noise_sigma, const Exec& exec);
+                const LeftImage& left, const Exec& exec);
 
 }  // namespace cairn

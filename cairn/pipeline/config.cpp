@@ -54,6 +54,7 @@ Config Config::preset(std::string_view name) {
 // Fitted by lab/search_paper.cpp.
 Config Config::paper() {
   Config c;
+  c.pipeline.method = Method::paper;
   c.epipolar_correction = {};
   c.match = {};
   c.subpixel = {};
@@ -67,7 +68,6 @@ Config Config::paper() {
   c.disparity.gradient_threshold = 0.25F;
   c.disparity.mean_difference_max = 1.5F;
   c.disparity.deviation_max = 1.5F;
-  c.fusion = {};
   c.objects = {.min_area = 0.5F};
   return c;
 }

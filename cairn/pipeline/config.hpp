@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/objects/fuse.hpp>
+#include <array>
+#include <cairn/core/fields.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/objects/space.hpp>
 #include <cairn/regions/evidence.hpp>
@@ -26,9 +27,25 @@
 
 namespace cairn {
 
+/// The method that finds objects. paper: regions of the image and of the disparities, joined where they overlap
+/// most. region_tree: superpixels are merged into a tree of regions, and the likeliest objects in it are chosen.
+enum class Method : std::uint8_t { paper, region_tree };
+inline constexpr std::array kMethods{Choice{"paper", Method::paper},
+                                     Choice{"region_tree", Method::region_tree}};
+
+struct PipelineConfig {
+  Method method = Method::region_tree;
+};
+template <class V>
+void fields(PipelineConfig& c, V&& v) {
+  v("method", c.method, "", "paper: the paper's method; region_tree: likeliest objects of a region tree",
+    kMethods);
+}
+
 /// The configuration of the method, one section per stage. A default-constructed Config is the preset
 /// `default`.
 struct Config {
+  PipelineConfig pipeline;
   EpipolarCorrectionConfig epipolar_correction{.max_rows = 4.0F};
   MatchConfig match{.method = MatchMethod::semi_global};
   SemiGlobalConfig semi_global;
@@ -45,7 +62,6 @@ struct Config {
   BackgroundConfig background;
   IntensityConfig intensity;
   DisparityConfig disparity;
-  FusionConfig fusion{.method = FusionMethod::hierarchy};
   SuperpixelsConfig superpixels;
   ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.3F};
   SpaceConfig space;
@@ -59,6 +75,7 @@ struct Config {
 /// Calls visit("match", c.match), … for every section, in data-flow order.
 template <class C, class F>
 void for_each_section(C& c, F&& visit) {
+  visit("pipeline", c.pipeline);
   visit("epipolar_correction", c.epipolar_correction);
   visit("match", c.match);
   visit("semi_global", c.semi_global);
@@ -72,7 +89,6 @@ void for_each_section(C& c, F&& visit) {
   visit("background", c.background);
   visit("intensity", c.intensity);
   visit("disparity", c.disparity);
-  visit("fusion", c.fusion);
   visit("superpixels", c.superpixels);
   visit("objects", c.objects);
   visit("space", c.space);

@@ -2,50 +2,53 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/pipeline/matched_scene.hpp>
+#include <cairn/core/observed.hpp>
+#include <cairn/pipeline/segment.hpp>
 #include <cairn/regions/object_hints.hpp>
+#include <functional>
 
 /// The methods, one source file each; segment() selects. Private to the library.
 namespace cairn {
 
-/// fusion.method=overlap, paper.cpp: image and disparities are segmented separately, and united where they
-/// overlap.
-Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const Config& config,
-                         const Exec& exec);
+/// The stereo result, and what later stages need of its making.
+struct StereoMatch {
+  StereoResult stereo;         // up to the checks: without floor and confidence
+  Matches matches{};           // empty for external disparities
+  Image<Gray> right{};         // as correct_epipolar() moved it; empty where nothing was corrected
+  Image<float> textured_px{};  // find_evidence(), with pipeline.method=region_tree
+};
+/// The beginning of both methods, match_and_check.cpp: disparities after the checks of single pixels. Sets the
+/// noise of `in`, and its right image to the corrected one; moves its external disparities.
+StereoMatch match_and_check(FrameInput& in, const Run& run, Observed& stage);
 
-/// The input of the merge tree.
-struct SuperpixelScene {
-  MatchedScene scene;
-  Image<float> seen_px;  // floor_under_reflections()
-  Background background;
-  Superpixels superpixels;
-  Image<ObjectHint> hints;
-  [[nodiscard]] Cues cues(const Given& given) const {
-    return {given.left,         given.left_rgb, seen_px,           scene.evidence_px,
-            scene.found.ground, background,     scene.noise_sigma, hints};
+/// pipeline.method=paper, paper.cpp: image and disparities are segmented separately, and united where they
+/// overlap.
+Frame segment_by_paper(FrameInput in, const Run& run);
+/// Its first half.
+StereoMatch stereo_by_paper(FrameInput& in, const Run& run, Observed& stage);
+
+/// All regions that may be objects, and the data from which they were grown.
+struct RegionCandidates {
+  StereoMatch match;
+  Image<float> seen_px{};  // floor_under_reflections()
+  Background background{};
+  Superpixels superpixels{};
+  Image<ObjectHint> hints{};
+  MergeTree tree{};
+  [[nodiscard]] Cues cues(const LeftImage& left) const {
+    return {left, seen_px, match.textured_px, match.stereo.ground, background, hints};
   }
 };
-/// The first half of segment_by_hierarchy(), and the input of fitting, which supplies its own hints: without
-/// a `network` there are none.
-SuperpixelScene cut_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
-                          const HintNetwork* network, const Exec& exec, Observed& stage);
+/// Chooses the objects. May move match.matches away, which no later stage needs.
+using ObjectChoice = std::function<ChosenObjects(RegionCandidates& candidates, const ChoiceLimits& limits)>;
 
-/// Every candidate region, and the data from which they were grown.
-struct GrownScene {
-  SuperpixelScene cut;
-  MergeTree tree;
-  Image<float> confidence;  // estimate_confidence()
-};
-/// segment_by_hierarchy() up to the tree …
-GrownScene grow_scene(Given& given, const std::optional<StereoRig>& rig, const Config& config,
-                      const Exec& exec, Observed& stage);
-/// … and from the choice of regions on, which may use several frames.
-Frame frame_of(GrownScene grown, const ChosenObjects& chosen, const Given& given,
-               const std::optional<StereoRig>& rig, const Config& config, const Exec& exec, Observed& stage);
-
-/// fusion.method=hierarchy, hierarchy.cpp: superpixels are merged by all cues into a tree of regions, of
-/// which those most likely to be whole objects are chosen.
-Frame segment_by_hierarchy(Given given, const std::optional<StereoRig>& rig, const Config& config,
-                           const Exec& exec);
+/// pipeline.method=region_tree, region_tree.cpp: superpixels are merged by all cues into a tree of regions, of
+/// which `choose` chooses the objects: by default, those most likely to be whole ones.
+Frame segment_by_region_tree(FrameInput in, const Run& run, const ObjectChoice& choose = {});
+/// Its first half …
+StereoMatch stereo_by_region_tree(FrameInput& in, const Run& run, Observed& stage);
+/// … and the candidates up to the superpixels. Without a `network`, there are no hints: fitting adds its own.
+RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const HintNetwork* network,
+                                       Observed& stage);
 
 }  // namespace cairn

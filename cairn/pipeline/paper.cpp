@@ -10,26 +10,34 @@
 
 namespace cairn {
 
-Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const Config& config,
-                         const Exec& exec) {
-  Observed stage(exec);
-  Frame frame;
+StereoMatch stereo_by_paper(FrameInput& in, const Run& run, Observed& stage) {
+  const auto& [rig, config, exec] = run;
+  StereoMatch found = match_and_check(in, run, stage);
+  auto& [disparity, ground, floor, epipolar, confidence] = found.stereo;
 
-  // Disparities, and the checks of single pixels and of the whole map.
-  MatchedScene scene = match_scene(given, rig, config, exec, stage);
-  frame.epipolar = scene.found.epipolar;
-  frame.ground = scene.found.ground;
-  frame.disparity = std::move(scene.found.disparity);
-  frame.floor = std::move(scene.found.floor);
+  // A check against the scene: matches below the floor are reflections.
+  ground = stage("fit_ground", fit_ground(disparity, rig, config.ground, exec));
+  disparity = stage("reject_below_ground",
+                    reject_below_ground(std::move(disparity), ground, rig, config.ground, exec));
+  disparity = stage("reject_speckles", reject_speckles(std::move(disparity), config.speckle, exec));
+  return found;
+}
+
+Frame segment_by_paper(FrameInput in, const Run& run) {
+  const auto& [rig, config, exec] = run;
+  Observed stage(exec);
+  StereoMatch match = stereo_by_paper(in, run, stage);
+  Frame frame{std::move(match.stereo)};
+  frame.floor = stage("label_floor", label_floor(frame.disparity, frame.ground, rig, config.ground, exec));
 
   // Growing by disparity uses one thread; the left image is segmented at the same time.
   Later<Segmentation> by_intensity(exec, [&](const Exec& concurrent) {
-    return segment_intensity(given.left, config.intensity, concurrent);
+    return segment_intensity(in.left.gray, run.config.intensity, concurrent);
   });
 
   // (The memory pool of the left image's regions may still be in use.)
   Later<Image<float>> confidence(exec.beside(), [&](const Exec& concurrent) {
-    return estimate_confidence(scene.matches, frame.disparity, confidence_model(config.match.method),
+    return estimate_confidence(match.matches, frame.disparity, confidence_model(run.config.match.method),
                                concurrent);
   });
 
@@ -40,19 +48,17 @@ Frame segment_by_overlap(Given given, const std::optional<StereoRig>& rig, const
   frame.fusion = stage("fuse", fuse(frame.by_intensity, frame.by_disparity, exec));
 
   // The fused regions that are objects, with positions.
-  frame.objects =
-      stage("measure", measure(frame.fusion.labels, frame.fusion.is_floor, frame.disparity, given.left,
-                               given.left_rgb, scene.noise_sigma, config.objects, exec));
+  frame.objects = stage("measure", measure(frame.fusion.labels, frame.fusion.is_floor, frame.disparity,
+                                           in.left, config.objects, exec));
   frame.objects = stage("locate", locate(std::move(frame.objects), frame.disparity, frame.ground, rig, exec));
   frame.confidence = stage("estimate_confidence", confidence.get());
 
   // Other obstacles.
   const Background none;
   const SpaceCues seen{frame.disparity, {}, frame.confidence, frame.ground, none, {}, frame.objects.labels};
+  const std::int64_t min_area = limits_of(config.objects, in.left.gray.size()).min_area;
   frame.space = stage("label_space", label_space(seen, rig, config.ground, exec));
-  frame.left_out =
-      stage("left_out_of", left_out_of(frame.space, seen, {}, rig,
-                                       {limits_of(config.objects, given.left.size()).min_area, 1}, exec));
+  frame.left_out = stage("left_out_of", left_out_of(frame.space, seen, {}, rig, {min_area, 1}, exec));
   return frame;
 }
 

@@ -3,50 +3,50 @@
 #include <cairn/core/error.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <cairn/stereo/confidence.hpp>
+#include <cmath>
 #include <utility>
 
 namespace cairn {
-namespace {
 
-Given given_as(const StereoPair& pair) {
-  return {pair.left(), pair.left_rgb(), pair.right(), {}};
+ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {
+  // Rounded up, so that an area of exactly min_area per cent suffices.
+  const double least = std::ceil(static_cast<double>(image.area()) * double{config.min_area} / 100);
+  return {config.min_confidence, static_cast<std::int64_t>(least)};
 }
 
-Frame by_the_method(Given given, const std::optional<StereoRig>& rig, const Config& config,
-                    const Exec& exec) {
-  return config.fusion.method == FusionMethod::hierarchy
-             ? segment_by_hierarchy(std::move(given), rig, config, exec)
-             : segment_by_overlap(std::move(given), rig, config, exec);
-}
-
-}  // namespace
-
-SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
-                                  const Config& config, const Exec& exec) {
+StereoResult estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
+                                const Config& config, const Exec& exec) {
   validate(config, pair.size(), rig.has_value());
   Observed stage(exec);
-  Given given = given_as(pair);
-  MatchedScene scene = match_scene(given, rig, config, exec, stage);
-  scene.found.confidence = stage(
-      "estimate_confidence",
-      estimate_confidence(scene.matches, scene.found.disparity, confidence_model(config.match.method), exec));
-  return std::move(scene.found);
+  FrameInput in = FrameInput::from(pair);
+  const bool by_paper = config.pipeline.method == Method::paper;
+  auto [stereo, matches, right, textured_px] = by_paper
+                                                   ? stereo_by_paper(in, {rig, config, exec}, stage)
+                                                   : stereo_by_region_tree(in, {rig, config, exec}, stage);
+  stereo.floor = stage("label_floor", label_floor(stereo.disparity, stereo.ground, rig, config.ground, exec));
+  stereo.confidence =
+      stage("estimate_confidence",
+            estimate_confidence(matches, stereo.disparity, confidence_model(config.match.method), exec));
+  return std::move(stereo);
 }
 
 Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
               const Exec& exec) {
-  validate(config, pair.size(), rig.has_value());
-  return by_the_method(given_as(pair), rig, config, exec);
+  return segment(FrameInput::from(pair), {rig, config, exec});
 }
 
-Frame segment(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disparity,
-              const std::optional<StereoRig>& rig, const Config& config, const Exec& exec) {
-  if (left.size() != disparity.disparity_px.size()) {
-    throw Error("external disparity: the map is " + text(disparity.disparity_px.size()) +
-                ", the left image " + text(left.size()));
+Frame segment(FrameInput in, const Run& run) {
+  const Size size = in.left.gray.size();
+  if (!in.right.empty()) {
+    validate(run.config, size, run.rig.has_value());
+  } else if (in.disparity.disparity_px.size() == size) {
+    validate(run.config);
+  } else {
+    throw Error("external disparity: the map is " + text(in.disparity.disparity_px.size()) +
+                ", the left image " + text(size));
   }
-  validate(config);
-  return by_the_method({left, left_rgb, {}, std::move(disparity)}, rig, config, exec);
+  return run.config.pipeline.method == Method::paper ? segment_by_paper(std::move(in), run)
+                                                     : segment_by_region_tree(std::move(in), run);
 }
 
 }  // namespace cairn

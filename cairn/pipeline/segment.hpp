@@ -2,56 +2,52 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/objects/fuse.hpp>
 #include <cairn/objects/space.hpp>
-#include <cairn/pipeline/config.hpp>
+#include <cairn/pipeline/input.hpp>
 #include <cairn/regions/choose_objects.hpp>
 
 namespace cairn {
 
 /// Disparity with the reason of every hole: after matching and all checks, ground and speckle included.
-struct SceneDisparity {
-  DisparityMap disparity;
-  Ground ground;
-  Image<std::uint8_t> floor;  // 255 = floor; empty without a ground
-  EpipolarOffset epipolar{};  // row offset of the right image
-  Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty without matching
+struct StereoResult {
+  DisparityMap disparity{};
+  Ground ground{};
+  Image<std::uint8_t> floor{};  // 255 = floor; empty without a ground
+  EpipolarOffset epipolar{};    // row offset of the right image
+  Image<float> confidence{};    // 0 … 1, see estimate_confidence(); empty without matching
 };
 
-/// The results of one pair. Results of the other method are empty.
-struct Frame {
-  DisparityMap disparity;
-  Ground ground;
-  Image<std::uint8_t> floor;  // 255 = floor; empty without a ground; with hierarchy, the floor of `space`
-  // With fusion.method=overlap: the regions of the left image, those of the disparities, and their fusion.
-  Segmentation by_intensity;
-  Segmentation by_disparity;
-  Fusion fusion;
-  // With fusion.method=hierarchy: the superpixels with their grey levels, and the regions chosen as objects
+/// The results of one pair. Results of the other method are empty. With pipeline.method=region_tree, `floor` is
+/// the floor of `space`.
+struct Frame : StereoResult {
+  // With pipeline.method=paper: the regions of the left image, those of the disparities, and their fusion.
+  Segmentation by_intensity{};
+  Segmentation by_disparity{};
+  Fusion fusion{};
+  // With pipeline.method=region_tree: the superpixels with their grey levels, and the regions chosen as objects
   // (region 0 = the rest) with their disparities.
-  Segmentation superpixels;
-  Segmentation groups;
-  Objects objects;
+  Segmentation superpixels{};
+  Segmentation groups{};
+  Objects objects{};
   // Obstacles for a robot, whether objects or not.
-  Image<Space> space;             // obstacle, floor or unknown
-  std::vector<LeftOut> left_out;  // obstacles that are not objects, nearest first, and why
-  EpipolarOffset epipolar{};
-  Image<float> confidence{};  // 0 … 1, see estimate_confidence(); empty without matching
+  Image<Space> space{};             // obstacle, floor or unknown
+  std::vector<LeftOut> left_out{};  // obstacles that are not objects, nearest first, and why
 };
 
 /// The limits of an object in an image of this size, for choose_objects().
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image);
 
 /// The first half of the method: from a pair to checked disparities. Throws Error like validate().
-SceneDisparity estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
-                                  const Config& config, const Exec& exec);
+StereoResult estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
+                                const Config& config, const Exec& exec);
 
 /// The whole method. Throws Error like validate(); it has no other failures.
 Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
               const Exec& exec);
 
-/// The method on an external disparity map (depth camera, learned matcher): see external_disparity(). Throws
+/// The same, also for external disparities (depth camera, learned matcher): see external_disparity(). Throws
 /// Error if sizes differ.
-Frame segment(View<const Gray> left, View<const Rgb> left_rgb, DisparityMap disparity,
-              const std::optional<StereoRig>& rig, const Config& config, const Exec& exec);
+Frame segment(FrameInput in, const Run& run);
 
 }  // namespace cairn

@@ -32,9 +32,12 @@ inline void in_steps(const float* disparity_px, float above, int width, std::int
   }
 }
 
-inline void add_steps(const std::uint16_t* edges, const float* up, const float* here, const float* down,
-                      int width, float weight, float largest, int least, std::uint16_t* CAIRN_RESTRICT out) {
-  const auto sum = [&](int x, int left, int right) {
+inline void add_steps(const std::uint16_t* edges, const StepRows& rows, int width, const StepSum& by,
+                      std::uint16_t* CAIRN_RESTRICT out) {
+  const auto [up, here, down] = rows;
+  const auto [weight, largest, least] = by;
+  const auto sum = [edges, up = up, here = here, down = down, weight = weight, largest = largest,
+                    least = least](int x, int left, int right) {
     const float d = here[x];
     const auto larger = [d](float step, float other) {
       const float to = std::abs(other - d);

@@ -17,6 +17,19 @@ inline constexpr std::size_t kTreeLanes = 16;   // samples
 inline constexpr std::size_t kDeepestTree = 6;  // splits on a path
 inline constexpr std::int32_t kNoDisparity = std::numeric_limits<std::int32_t>::min();
 
+/// Disparities, px, of a row and of its neighbours.
+struct StepRows {
+  const float* up;
+  const float* here;
+  const float* down;
+};
+/// The sum of an edge and a disparity step: `weight` per px, steps of at most `largest` px, 0 below `least`.
+struct StepSum {
+  float weight;
+  float largest;
+  int least;
+};
+
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
 struct CueKernels {
@@ -24,10 +37,9 @@ struct CueKernels {
   void (*nearest_plane)(std::span<const GroundPlane> planes, int y, int width, float* out);
   /// In 1/64 px, rounded, halves up; kNoDisparity where a value is NaN or not above `above`.
   void (*in_steps)(const float* disparity_px, float above, int width, std::int32_t* out);
-  /// Adds to each edge `weight` times the largest disparity step to one of the four neighbours, limited to
-  /// `largest` px; 0 where the sum is below `least`. A hole has no step.
-  void (*add_steps)(const std::uint16_t* edges, const float* up, const float* here, const float* down,
-                    int width, float weight, float largest, int least, std::uint16_t* out);
+  /// Adds to each edge the largest disparity step to one of the four neighbours. A hole has no step.
+  void (*add_steps)(const std::uint16_t* edges, const StepRows& rows, int width, const StepSum& by,
+                    std::uint16_t* out);
   /// Adds to each of kTreeLanes sums the leaves that its sample reaches in `count` complete trees, stored as in
   /// FittedTrees. `features`: kTreeLanes values of each. Precondition: 1 ≤ depth ≤ kDeepestTree.
   void (*sum_trees)(const FittedTrees::Split* splits, const float* leaves, std::size_t depth,

@@ -49,7 +49,7 @@ Image<float> textured(View<const Gray> left, const DisparityMap& disparity, floa
       float* const out = result.row(v);
       std::fill_n(out, result.width(), kNaN);
       if (y < 0 || y >= height) continue;
-      run.textured(smooth.row(std::max(y - 1, 0)), smooth.row(y), smooth.row(std::min(y + 1, height - 1)),
+      run.textured({smooth.row(std::max(y - 1, 0)), smooth.row(y), smooth.row(std::min(y + 1, height - 1))},
                    disparity.reject.row(y), disparity.disparity_px.row(y), width, least, out + kReach);
     }
   });
@@ -58,12 +58,12 @@ Image<float> textured(View<const Gray> left, const DisparityMap& disparity, floa
 
 }  // namespace
 
-Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity, float noise_sigma,
-                           const EvidenceConfig& config, const Exec& exec) {
-  const Size size = left.size();
+Image<float> find_evidence(const LeftImage& left, const DisparityMap& disparity, const EvidenceConfig& config,
+                           const Exec& exec) {
+  const Size size = left.gray.size();
   const kernels::EvidenceKernels& run = kernels::evidence_kernels(exec);
-  const float least_gradient = config.noise_factor * noise_sigma + config.gradient_min;
-  const Image<float> candidates = textured(left, disparity, least_gradient, run, exec);
+  const float least_gradient = config.noise_factor * left.noise_sigma + config.gradient_min;
+  const Image<float> candidates = textured(left.gray, disparity, least_gradient, run, exec);
   const float agreement = config.agreement * 0.001F * static_cast<float>(size.width);
   Image<float> evidence(size, exec.pool);
   parallel_for(exec, size.height, kGrain, [&](int first, int last) {

@@ -4,6 +4,7 @@
 
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
+#include <cairn/core/left_image.hpp>
 #include <cairn/stereo/disparity_map.hpp>
 
 namespace cairn {
@@ -19,9 +20,8 @@ struct EvidenceConfig {
 /// The textured disparities, NaN elsewhere: valid ones at pixels whose horizontal gradient exceeds the noise
 /// and is not that of a nearly horizontal edge (|gx| > |gy|/2), with at least three agreeing disparities of
 /// such pixels in the 5×5 neighbourhood. Other disparities are propagated from the surroundings by the
-/// matcher, which is how near objects grow beyond their outlines. `noise_sigma`: of the left image. (beyond
-/// the paper)
-Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity, float noise_sigma,
-                           const EvidenceConfig& config, const Exec& exec);
+/// matcher, which is how near objects grow beyond their outlines. (beyond the paper)
+Image<float> find_evidence(const LeftImage& left, const DisparityMap& disparity, const EvidenceConfig& config,
+                           const Exec& exec);
 
 }  // namespace cairn

@@ -14,10 +14,10 @@ inline void smooth_lightly(const std::uint8_t* up, const std::uint8_t* here, con
     out[x] = static_cast<std::int16_t>(column[x] + 6 * column[x + 1] + column[x + 2]);
 }
 
-inline void textured(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
-                     const Reject* reject, const float* disparity_px, int width, int least,
-                     float* CAIRN_RESTRICT out) {
-  const auto tested = [&](int x, int left, int right) {
+inline void textured(const SmoothRows& smooth, const Reject* reject, const float* disparity_px, int width,
+                     int least, float* CAIRN_RESTRICT out) {
+  const auto tested = [up = smooth.up, here = smooth.here, down = smooth.down, reject, disparity_px, least](
+                          int x, int left, int right) {
     const int across = std::abs(here[right] - here[left]);
     const int along = std::abs(down[x] - up[x]);
     const bool passes = (reject[x] == Reject::none) & (across > least) & (2 * across > along);

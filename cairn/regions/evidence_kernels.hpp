@@ -9,6 +9,13 @@
 /// The kernels of find_evidence(), per pixel of a row; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
+/// A row of the smoothed image and its neighbours, in 1/64 grey level.
+struct SmoothRows {
+  const std::int16_t* up;
+  const std::int16_t* here;
+  const std::int16_t* down;
+};
+
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
 struct EvidenceKernels {
@@ -17,8 +24,8 @@ struct EvidenceKernels {
                          int width, std::int16_t* column, std::int16_t* out);
   /// The disparities of valid pixels whose horizontal difference exceeds `least` and half of the vertical
   /// one; NaN elsewhere.
-  void (*textured)(const std::int16_t* up, const std::int16_t* here, const std::int16_t* down,
-                   const Reject* reject, const float* disparity_px, int width, int least, float* out);
+  void (*textured)(const SmoothRows& smooth, const Reject* reject, const float* disparity_px, int width,
+                   int least, float* out);
   /// Keeps the values of rows[2] with at least three other values of the 5×5 neighbourhood within
   /// `agreement`; NaN elsewhere. All rows are padded by two NaN at either end.
   void (*agreed)(const float* const* rows, int width, float agreement, float* out);

@@ -105,8 +105,8 @@ class Describing {
     columns_.clear();
     for (int y = first; y < last; ++y) {
       behind_.note(y);
-      const HintPixels row{cues_.gray.row(y),
-                           cues_.rgb.empty() ? nullptr : cues_.rgb.row(y),
+      const HintPixels row{cues_.left.gray.row(y),
+                           cues_.left.rgb.empty() ? nullptr : cues_.left.rgb.row(y),
                            edges_.row(y),
                            cues_.disparity_px.row(y),
                            cues_.evidence_px.row(y),
@@ -137,7 +137,7 @@ class Describing {
     run_.mean(real(kDisparity), matched, cells_, kNone, means.disparity.row(y));
     run_.mean(real(kGround), areas, cells_, 0, means.ground.row(y));
     const auto put = [&](Channel channel, double unit, double least, double most) {
-      run_.put(means_.data(), cells_, 0, unit, least, most, kHintChannels, out + channel);
+      run_.put(means_.data(), cells_, {0, unit, least, most}, kHintChannels, out + channel);
     };
     const auto put_mean = [&](const double* sums, const double* counts, Channel channel, double unit,
                               double least, double most) {
@@ -148,7 +148,7 @@ class Describing {
     put_mean(whole(kRed), areas, kMeanRed, 32, -4, 4);
     put_mean(matched, areas, kShareMatched, 1, 0, 1);
     put_mean(real(kHeight), whole(kAbove), kAboveGround, 4, -1, 3);
-    put_mean(whole(kEdges), areas, kMeanEdge, 8 * (double{cues_.noise_sigma} + 2), 0, 4);
+    put_mean(whole(kEdges), areas, kMeanEdge, 8 * (double{cues_.left.noise_sigma} + 2), 0, 4);
     put_mean(whole(kTextured), areas, kShareTextured, 1, 0, 1);
     if (cues_.background.planes.empty()) {
       std::fill(means_.begin(), means_.end(), 0.0);
@@ -158,7 +158,7 @@ class Describing {
     }
     std::fill(means_.begin(), means_.end(), 2 * (static_cast<double>(y) / rows) - 1);
     put(kHeightInImage, 1, -1, 1);
-    std::fill(means_.begin(), means_.end(), cues_.rgb.empty() ? 0.0 : 1.0);
+    std::fill(means_.begin(), means_.end(), cues_.left.rgb.empty() ? 0.0 : 1.0);
     put(kHasColour, 1, 0, 1);
   }
 
@@ -222,7 +222,7 @@ Size hint_cells(Size image) {
 }
 
 Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues, const Exec& exec) {
-  const Size cells = hint_cells(cues.gray.size());
+  const Size cells = hint_cells(cues.left.gray.size());
   const Runs across(cells.width, edges.width());
   const Runs down(cells.height, edges.height());
   Image<std::int16_t> input = framed_image(cells, kHintChannels, exec.pool);
@@ -243,7 +243,7 @@ Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues
   for (int y = 0; y < cells.height; ++y) {
     const auto put = [&](const double* values, Channel channel, double zero, double unit, double least,
                          double most) {
-      run.put(values, cells.width, zero, unit, least, most, kHintChannels, row(y) + channel);
+      run.put(values, cells.width, {zero, unit, least, most}, kHintChannels, row(y) + channel);
     };
     put(means.brightness.row(y), kMeanBrightness, brightness.mean, brightness.spread, -4, 4);
     put(means.disparity.row(y), kMeanDisparity, 0, nearest, 0, 2);

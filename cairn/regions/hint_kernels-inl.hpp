@@ -93,8 +93,9 @@ inline void mean(const double* sums, const double* counts, int cells, double non
   }
 }
 
-inline void put(const double* values, int cells, double zero, double unit, double least, double most,
-                int stride, std::int16_t* CAIRN_RESTRICT out) {
+inline void put(const double* values, int cells, const ChannelScale& scale, int stride,
+                std::int16_t* CAIRN_RESTRICT out) {
+  const auto [zero, unit, least, most] = scale;
   // For positive numbers truncation is faster than floor(), and exact.
   constexpr int kPositive = 1024;
   constexpr double kSteps = 64;

@@ -48,6 +48,14 @@ struct CellSums {
   std::array<double*, kRealSums> real{};
 };
 
+/// The scale of a channel: (value − zero) / unit, limited to least … most. Precondition: least ≥ −16.
+struct ChannelScale {
+  double zero;
+  double unit;
+  double least;
+  double most;
+};
+
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
 struct HintKernels {
@@ -58,10 +66,8 @@ struct HintKernels {
                     int cells, const CellSums& sums);
   /// sums / counts; `none` where the count is 0.
   void (*mean)(const double* sums, const double* counts, int cells, double none, double* out);
-  /// (value − zero) / unit, limited to least … most, in 1/64, rounded, halves up, to every `stride`th of `out`.
-  /// Precondition: least ≥ −16.
-  void (*put)(const double* values, int cells, double zero, double unit, double least, double most,
-              int stride, std::int16_t* out);
+  /// By `scale`, in 1/64, rounded, halves up, to every `stride`th of `out`.
+  void (*put)(const double* values, int cells, const ChannelScale& scale, int stride, std::int16_t* out);
 };
 
 /// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.

@@ -85,7 +85,7 @@ class Gathering {
         edges_(superpixels.edges),
         width_(labels_.width()),
         height_(labels_.height()),
-        weak_(weakest_edge(cues.noise_sigma)),
+        weak_(weakest_edge(cues.left.noise_sigma)),
         steps_(steps),
         textured_(slot(width_)),
         ground_(slot(width_)),
@@ -167,10 +167,10 @@ class Gathering {
     std::int64_t texture = 0;
     for (int i = first; i < last; ++i) texture += edges_(i, y);
     region.texture += texture;
-    if (cues_.rgb.empty()) {
-      add_colour(region, cues_.gray.row(y), first, last);
+    if (cues_.left.rgb.empty()) {
+      add_colour(region, cues_.left.gray.row(y), first, last);
     } else {
-      add_colour(region, cues_.rgb.row(y), first, last);
+      add_colour(region, cues_.left.rgb.row(y), first, last);
     }
     if (!cues_.hints.empty()) add_hints(region, y, first, last);
     add_depth(region, y, first, last);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/exec.hpp>
+#include <cairn/core/left_image.hpp>
 #include <cairn/regions/superpixels.hpp>
 #include <cairn/scene/background.hpp>
 #include <cairn/scene/ground_plane.hpp>
@@ -31,15 +32,13 @@ struct HintSums {
 
 struct ObjectHint;  // cairn/regions/object_hints.hpp
 
-/// The inputs per pixel. Views of one size; `rgb` may be empty.
+/// The inputs per pixel. Views of one size.
 struct Cues {
-  View<const Gray> gray;
-  View<const Rgb> rgb;
+  LeftImage left;
   View<const float> disparity_px;  // NaN = hole
   View<const float> evidence_px;   // the same, NaN where not textured: find_evidence()
   const Ground& ground;
   const Background& background;
-  float noise_sigma = 0;              // grey levels
   View<const ObjectHint> hints = {};  // hint_objects(): of cells, not of pixels; may be empty
 };
 
@@ -78,7 +77,7 @@ inline std::array<int, 3> colour_of(Gray gray) {
   return {gray, 0, 0};
 }
 inline std::array<int, 3> colour_at(const Cues& cues, int x, int y) {
-  return cues.rgb.empty() ? colour_of(cues.gray(x, y)) : colour_of(cues.rgb(x, y));
+  return cues.left.rgb.empty() ? colour_of(cues.left.gray(x, y)) : colour_of(cues.left.rgb(x, y));
 }
 
 /// Pixels per bin: of brightness, blue − green, red − green.

@@ -122,11 +122,19 @@ std::pair<double, double> middle(const ContactCues& c) {
   return {static_cast<double>(c.x2) / twice, static_cast<double>(c.y2) / twice};
 }
 
-/// Depth of a smaller region s relative to a larger one l, for one kind of disparities.
+/// One kind of disparities of a region.
+struct Surface {
+  const PlaneMoments& moments;
+  const FittedPlane& plane;
+};
+
+/// Depth of a smaller region relative to a larger one, for one kind of disparities.
 template <class Out>
-void depth_features(const std::array<std::string_view, 5>& names, const PlaneMoments& of_s,
-                    const FittedPlane& s, const PlaneMoments& of_l, const FittedPlane& l, std::int64_t least,
-                    const ContactCues& contact, int width, Out& out) {
+void depth_features(const std::array<std::string_view, 5>& names, const Surface& smaller,
+                    const Surface& larger, std::int64_t least, const ContactCues& contact, int width,
+                    Out& out) {
+  const auto& [of_s, s] = smaller;
+  const auto& [of_l, l] = larger;
   if (of_s.n < least || of_l.n < least) {
     for (const std::string_view name : names) out(name, kUnknown);
     return;
@@ -183,10 +191,10 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
   out("step 3 px away from it, px", mean_px(contact.far_abs, contact.far_n));
   out("share of the border with disparities there", share(contact.far_n, contact.length));
   out("share of level disparities there", share(contact.level, contact.far_n));
-  depth_features(kTexturedNames, s.textured, fits_s.textured, l.textured, fits_l.textured, kLeastTextured,
+  depth_features(kTexturedNames, {s.textured, fits_s.textured}, {l.textured, fits_l.textured}, kLeastTextured,
                  contact, frame.width, out);
-  depth_features(kMatchedNames, s.matched, fits_s.matched, l.matched, fits_l.matched, kLeastMatched, contact,
-                 frame.width, out);
+  depth_features(kMatchedNames, {s.matched, fits_s.matched}, {l.matched, fits_l.matched}, kLeastMatched,
+                 contact, frame.width, out);
   out("evidence, share of the smaller one", share(s.textured.n, s.area));
   out("evidence, share of the larger one", share(l.textured.n, l.area));
   out("disparities, share of the smaller one", share(s.matched.n, s.area));
@@ -521,15 +529,15 @@ FittedPlane fit_plane(const PlaneMoments& m, int width) {
 
 FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues) {
   FrameCues frame;
-  frame.width = cues.gray.width();
-  frame.height = cues.gray.height();
-  frame.has_colour = !cues.rgb.empty();
+  frame.width = cues.left.gray.width();
+  frame.height = cues.left.gray.height();
+  frame.has_colour = !cues.left.rgb.empty();
   frame.has_ground = cues.ground.plane.has_value();
   frame.walls_and_floor = static_cast<int>(cues.background.planes.size());
-  frame.noise_sigma = cues.noise_sigma;
+  frame.noise_sigma = cues.left.noise_sigma;
   frame.has_hints = !cues.hints.empty();
   frame.cells_per_px =
-      static_cast<double>(cues.hints.size().area()) / static_cast<double>(cues.gray.size().area());
+      static_cast<double>(cues.hints.size().area()) / static_cast<double>(cues.left.gray.size().area());
   frame.cells_across = cues.hints.width();
   std::int64_t matched = 0;
   std::int64_t textured = 0;
@@ -544,7 +552,7 @@ FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues) {
         std::max(frame.nearest_px, static_cast<double>(region.matched.d) /
                                        static_cast<double>(region.matched.n) / kDisparitySteps);
   }
-  const auto area = static_cast<float>(cues.gray.size().area());
+  const auto area = static_cast<float>(cues.left.gray.size().area());
   frame.matched_share = static_cast<float>(matched) / area;
   frame.evidence_share = static_cast<float>(textured) / area;
   return frame;

@@ -25,16 +25,16 @@ struct SegmentConfig {
 };
 template <Segmented values, class V>
 void fields(SegmentConfig<values>& c, V&& v) {
-  constexpr Condition kByOverlap = when("fusion.method", "overlap");
+  constexpr Condition kByPaper = when("pipeline.method", "paper");
   constexpr bool kGrey = SegmentConfig<values>::kGrey;
   constexpr const char* kUnit = kGrey ? "grey levels" : "px";
   constexpr float kGreatest = kGrey ? 255.0F : 64.0F;
   v("gradient_threshold", c.gradient_threshold, kUnit,
-    "smallest gradient above 0: suppresses basins from noise", range(0.0F, kGreatest), kByOverlap);
+    "smallest gradient above 0: suppresses basins from noise", range(0.0F, kGreatest), kByPaper);
   v("mean_difference_max", c.mean_difference_max, kUnit,
-    "Eq. 1: largest difference of the means of fusing regions", range(0.0F, kGreatest), kByOverlap);
+    "Eq. 1: largest difference of the means of fusing regions", range(0.0F, kGreatest), kByPaper);
   v("deviation_max", c.deviation_max, "σ", "Eq. 2: largest shift of the mean by a fusion",
-    range(0.0F, 100.0F), kByOverlap);
+    range(0.0F, 100.0F), kByPaper);
 }
 using IntensityConfig = SegmentConfig<Segmented::intensity>;
 using DisparityConfig = SegmentConfig<Segmented::disparity>;

@@ -39,9 +39,10 @@ Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const floa
   Image<std::uint16_t> sum(edges.size(), exec.pool);
   parallel_for(exec, height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
-      run.add_steps(edges.row(y), disparity_px.row(std::max(y - 1, 0)), disparity_px.row(y),
-                    disparity_px.row(std::min(y + 1, height - 1)), edges.width(), kStepWeight, kLargestStep,
-                    least, sum.row(y));
+      run.add_steps(edges.row(y),
+                    {disparity_px.row(std::max(y - 1, 0)), disparity_px.row(y),
+                     disparity_px.row(std::min(y + 1, height - 1))},
+                    edges.width(), {kStepWeight, kLargestStep, least}, sum.row(y));
     }
   });
   return sum;
@@ -228,8 +229,8 @@ class Fusing {
 
 }  // namespace
 
-Image<std::uint16_t> superpixel_edges(View<const Gray> gray, View<const Rgb> rgb, const Exec& exec) {
-  return edge_strength(gray, rgb, kSmoothing, exec);
+Image<std::uint16_t> superpixel_edges(const LeftImage& left, const Exec& exec) {
+  return edge_strength(left.gray, left.rgb, kSmoothing, exec);
 }
 
 Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> disparity_px, float noise_sigma,
@@ -247,9 +248,9 @@ Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> dispar
   return {std::move(basins.labels), count, std::move(edges)};
 }
 
-Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
-                            float noise_sigma, const SuperpixelsConfig& config, const Exec& exec) {
-  return cut_superpixels(superpixel_edges(gray, rgb, exec), disparity_px, noise_sigma, config, exec);
+Superpixels cut_superpixels(const LeftImage& left, View<const float> disparity_px,
+                            const SuperpixelsConfig& config, const Exec& exec) {
+  return cut_superpixels(superpixel_edges(left, exec), disparity_px, left.noise_sigma, config, exec);
 }
 
 Segmentation segmentation_of(const Superpixels& superpixels, View<const Gray> left, const Exec& exec) {

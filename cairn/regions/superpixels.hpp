@@ -6,6 +6,7 @@
 #include <cairn/core/fields.hpp>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
+#include <cairn/core/left_image.hpp>
 #include <cairn/regions/region_graph.hpp>
 #include <cstdint>
 
@@ -17,7 +18,7 @@ struct SuperpixelsConfig {
 template <class V>
 void fields(SuperpixelsConfig& c, V&& v) {
   v("count", c.count, "", "largest number of superpixels; more for small objects, but slower",
-    range(1, 100000), when("fusion.method", "hierarchy"));
+    range(1, 100000), when("pipeline.method", "region_tree"));
 }
 
 /// Connected pieces of the image without a clear edge of brightness, colour or depth inside.
@@ -36,13 +37,13 @@ struct Superpixels {
 ///
 /// until `count` are left: small and similar ones first. The edge between two pixels is the stronger one of
 /// theirs, depth included. Ties: the border that occurs first in raster order, from each pixel to the right
-/// before down. `rgb` may be empty; `disparity_px`: NaN for holes, which add no edge.
+/// before down. `disparity_px`: NaN for holes, which add no edge.
 /// (docs/stages/superpixels.md, beyond the paper)
-Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
-                            float noise_sigma, const SuperpixelsConfig& config, const Exec& exec);
+Superpixels cut_superpixels(const LeftImage& left, View<const float> disparity_px,
+                            const SuperpixelsConfig& config, const Exec& exec);
 
 /// The same in two steps: first the edges of the image, edge_strength() at σ = 0.7 px …
-Image<std::uint16_t> superpixel_edges(View<const Gray> gray, View<const Rgb> rgb, const Exec& exec);
+Image<std::uint16_t> superpixel_edges(const LeftImage& left, const Exec& exec);
 /// … then the superpixels.
 Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> disparity_px, float noise_sigma,
                             const SuperpixelsConfig& config, const Exec& exec);

@@ -19,7 +19,7 @@ struct BackgroundConfig {
 template <class V>
 void fields(BackgroundConfig& c, V&& v) {
   v("max_walls", c.max_walls, "", "largest number of walls to fit; 0 outdoors", range(0, 8),
-    when("fusion.method", "hierarchy"));
+    when("pipeline.method", "region_tree"));
 }
 
 /// The largest distance of a disparity from a wall that it supports, px.

@@ -30,7 +30,7 @@ void fields(GroundConfig& c, V&& v) {
   v("margin", c.margin, "px", "largest distance of floor pixels from the floor plane", range(0.0F, 64.0F),
     kGround);
   v("label_floor", c.label_floor, "", "exclusion of floor pixels from objects", Any{},
-    when("fusion.method", "overlap"));
+    when("pipeline.method", "paper"));
 }
 
 /// The floor in the left image as disparity: d = a·x + b·y + c, pixels in px. (docs/stages/ground.md)

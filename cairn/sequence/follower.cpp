@@ -123,7 +123,7 @@ void Follower::check(const StereoPair& pair, Stamp stamp) const {
   }
 }
 
-Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const SeenDisparity& seen,
+Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoResult& seen,
                              const std::optional<MotionPrior>& prior,
                              const std::optional<Pose>& map_from_camera) {
   OdometryState& odometry = state_.odometry;
@@ -169,55 +169,49 @@ Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<M
   step.stamp = stamp;
   const Config& config = config_.segmentation;
   validate(config, pair.size(), rig_.has_value());
-  Observed stage(exec_);
-
-  // Segment the frame; with `hierarchy`, up to the candidate regions …
-  Given given{pair.left(), pair.left_rgb(), pair.right(), {}};
-  const bool has_tree = config.fusion.method == FusionMethod::hierarchy;
-  GrownScene grown;
-  if (has_tree) {
-    grown = grow_scene(given, rig_, config, exec_, stage);
-  } else {
-    step.frame = segment(pair, rig_, config, exec_);
-  }
-  const SceneDisparity& found = grown.cut.scene.found;
-  const SeenDisparity seen =
-      has_tree ? SeenDisparity{found.disparity, found.ground, grown.confidence}
-               : SeenDisparity{step.frame.disparity, step.frame.ground, step.frame.confidence};
-
-  // … estimate the camera motion …
-  step.motion = move_camera(pair, stamp, seen, prior, map_from_camera);
-  const Pose& pose = step.map_from_camera = state_.odometry.map_from_camera;
-  step.pose_covariance = state_.odometry.covariance;
-  step.is_lost = state_.odometry.lost;
-
-  const Covariance6 since_key = covariance_since_key(state_.odometry);
-  state_.tracks =
-      tied_to_key(std::move(state_.tracks), pose, state_.odometry.key_covariance, step.motion.is_new_segment);
-
-  // … predict the tracks, which helps to choose objects …
-  const Image<std::int16_t> best_right = std::move(grown.cut.scene.matches.best_right);
   const StereoRig rig = rig_.value_or(picture_rig(pair.size()));
-  const Warped warped = warp(state_.remembered, state_.tracks, pose, stamp, rig, pair.size(), exec_);
-  if (has_tree) {
-    const ChoiceLimits limits = limits_of(config.objects, pair.size());
-    std::vector<float> scores = score_nodes(grown.tree, whole_object_trees(), limits, exec_);
+  Covariance6 since_key{};
+  Warped warped;
+  // The motion of the camera, and the tracks as predicted for this frame.
+  const auto predict = [&](const StereoResult& stereo) {
+    step.motion = move_camera(pair, stamp, stereo, prior, map_from_camera);
+    step.map_from_camera = state_.odometry.map_from_camera;
+    step.pose_covariance = state_.odometry.covariance;
+    step.is_lost = state_.odometry.lost;
+    since_key = covariance_since_key(state_.odometry);
+    state_.tracks = tied_to_key(std::move(state_.tracks), step.map_from_camera,
+                                state_.odometry.key_covariance, step.motion.is_new_segment);
+    warped = warp(state_.remembered, state_.tracks, step.map_from_camera, stamp, rig, pair.size(), exec_);
+  };
+
+  // Segment the frame; in a tree of regions, the tracks help to choose the objects.
+  Image<std::int16_t> best_right;
+  const auto choose = [&](RegionCandidates& found, const ChoiceLimits& limits) {
+    predict(found.match.stereo);
+    best_right = std::move(found.match.matches.best_right);
+    std::vector<float> scores = score_nodes(found.tree, whole_object_trees(), limits, exec_);
     if (!step.is_lost) {
-      scores = repaired_scores(grown.tree, std::move(scores), grown.cut.superpixels, warped, state_.tracks,
+      scores = repaired_scores(found.tree, std::move(scores), found.superpixels, warped, state_.tracks,
                                config_.repair);
     }
-    const ChosenObjects chosen = stage(
-        "choose_objects", choose_candidates(grown.tree, scores, limits, config_.tracking.low_confidence));
-    step.frame = frame_of(std::move(grown), chosen, given, rig_, config, exec_, stage);
+    return choose_candidates(found.tree, scores, limits, config_.tracking.low_confidence);
+  };
+  const Run run{rig_, config, exec_};
+  if (config.pipeline.method == Method::region_tree) {
+    step.frame = segment_by_region_tree(FrameInput::from(pair), run, choose);
+  } else {
+    step.frame = segment_by_paper(FrameInput::from(pair), run);
+    predict(step.frame);
   }
   const Frame& frame = step.frame;
+  const Pose& pose = step.map_from_camera;
   state_.size = pair.size();
   state_.before = stamp;
   ++state_.frames;
 
-  // … match objects and tracks …
+  // Match objects and tracks …
   const Overlaps overlaps = overlaps_of(warped, state_.tracks, frame.objects, frame.disparity);
-  const auto sightings = sight(frame, pair.left(), pair.left_rgb(), rig_, config_.tracking);
+  const auto sightings = sight(frame, {pair.left(), pair.left_rgb()}, rig_, config_.tracking);
   const auto matches =
       step.is_lost ? std::vector<Match>{}
                    : associate(state_.tracks, sightings, overlaps, pose, since_key, stamp, config_.tracking);

@@ -71,13 +71,8 @@ class Follower {
   /// Throws Error unless the frame continues the sequence.
   void check(const StereoPair& pair, Stamp stamp) const;
 
-  struct SeenDisparity {
-    const DisparityMap& disparity;
-    const Ground& ground;
-    const Image<float>& confidence;
-  };
   /// The motion since the frame before; moves the camera of `state_`.
-  Motion move_camera(const StereoPair& pair, Stamp stamp, const SeenDisparity& seen,
+  Motion move_camera(const StereoPair& pair, Stamp stamp, const StereoResult& seen,
                      const std::optional<MotionPrior>& prior, const std::optional<Pose>& map_from_camera);
 
   struct State {

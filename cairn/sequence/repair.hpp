@@ -22,7 +22,7 @@ struct RepairConfig {
 template <class V>
 void fields(RepairConfig& c, V&& v) {
   v("method", c.method, "", "use of tracks in the choice of objects", kRepairMethods,
-    when("fusion.method", "hierarchy"));
+    when("pipeline.method", "region_tree"));
 }
 
 /// The probability of each node of the tree to be a whole object, from this frame (`scores`) and from the

@@ -192,9 +192,9 @@ float likeness(const ColourHistogram& a, const ColourHistogram& b) {
   return std::min(sum / 2, 1.0F);
 }
 
-std::vector<Sighting> sight(const Frame& frame, View<const Gray> left, View<const Rgb> left_rgb,
-                            const std::optional<StereoRig>& rig, const TrackingConfig& config) {
-  const std::vector<ColourHistogram> looks = looks_of(frame.objects, left, left_rgb);
+std::vector<Sighting> sight(const Frame& frame, const LeftImage& left, const std::optional<StereoRig>& rig,
+                            const TrackingConfig& config) {
+  const std::vector<ColourHistogram> looks = looks_of(frame.objects, left.gray, left.rgb);
   const auto floor = floor_frame(frame.ground, rig);
   std::vector<Sighting> sightings;
   for (const Object& object : frame.objects.list) {
@@ -206,8 +206,8 @@ std::vector<Sighting> sight(const Frame& frame, View<const Gray> left, View<cons
     seen.pixel_count = object.pixel_count;
     seen.box_px = object.box_px;
     const Rect& box = object.box_px;
-    const Cut cut{box.x == 0 || box.x + box.width == left.width(),
-                  box.y == 0 || box.y + box.height == left.height()};
+    const Cut cut{box.x == 0 || box.x + box.width == left.gray.width(),
+                  box.y == 0 || box.y + box.height == left.gray.height()};
     seen.is_cut = cut.x || cut.y;
     if (rig && object.position_in_camera_m && object.position_in_camera_m->z > 0) {
       const Vec3& p = *object.position_in_camera_m;

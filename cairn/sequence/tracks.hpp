@@ -72,8 +72,8 @@ struct Sighting {
 
 /// The objects of a frame with at least low_confidence, by ObjectId. Without a rig, none has a position.
 /// (docs/stages/tracking.md)
-std::vector<Sighting> sight(const Frame& frame, View<const Gray> left, View<const Rgb> left_rgb,
-                            const std::optional<StereoRig>& rig, const TrackingConfig& config);
+std::vector<Sighting> sight(const Frame& frame, const LeftImage& left, const std::optional<StereoRig>& rig,
+                            const TrackingConfig& config);
 
 enum class TrackState : std::uint8_t { tentative, confirmed, occluded, out_of_view, lost, dead };
 inline constexpr std::array kTrackStates{

@@ -84,7 +84,7 @@ std::set<std::string, std::less<>> disparity_stages(const StereoPair& pair,
                                                     const std::optional<StereoRig>& rig, const Config& config,
                                                     Exec exec) {
   std::set<std::string, std::less<>> names;
-  exec.observe = [&](std::string_view stage, const Artifact&, double) { names.emplace(stage); };
+  exec.observe = [&](std::string_view stage, const StageResult&, double) { names.emplace(stage); };
   static_cast<void>(estimate_disparity(pair, rig, config, exec));
   return names;
 }
@@ -130,7 +130,7 @@ FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& r
   FrameTimes all;
   StageClock clock;
   Exec watched = exec;
-  watched.observe = [&clock](std::string_view stage, const Artifact&, double ms) { clock(stage, ms); };
+  watched.observe = [&clock](std::string_view stage, const StageResult&, double ms) { clock(stage, ms); };
   const Segmenter segmenter(config, rig, watched);
   const Pool& pool = segmenter.exec().pool;
   const auto run = [&] {

@@ -41,13 +41,13 @@ Frame segment_again(const TuningFrame& frame, const Config& config, MatchedOnce&
   validate(config, frame.pair.size(), frame.rig.has_value());
   std::string settings = matching_settings(config);
   if (matched.settings == settings) {
-    return segment(frame.pair.left(), frame.pair.left_rgb(), copy_of(matched.disparity, exec), frame.rig,
-                   config, exec);
+    return segment({{frame.pair.left(), frame.pair.left_rgb()}, {}, copy_of(matched.disparity, exec)},
+                   {frame.rig, config, exec});
   }
   Exec watched = exec;
-  watched.observe = [&](std::string_view stage, const Artifact& artifact, double) {
+  watched.observe = [&](std::string_view stage, const StageResult& result, double) {
     // Not from the pool, which is destroyed with its thread.
-    if (stage == "combine") matched.disparity = copy_of(*std::get<const DisparityMap*>(artifact), {});
+    if (stage == "combine") matched.disparity = copy_of(*result.as<DisparityMap>(), {});
   };
   Frame found = segment(frame.pair, frame.rig, config, watched);
   matched.settings = std::move(settings);
@@ -71,7 +71,7 @@ Outcome judge_objects(const TuningFrame& frame, const Config& config, MatchedOnc
 }
 
 Outcome judge_disparities(const TuningFrame& frame, const Config& config, const Exec& exec) {
-  const SceneDisparity found = estimate_disparity(frame.pair, frame.rig, config, exec);
+  const StereoResult found = estimate_disparity(frame.pair, frame.rig, config, exec);
   Outcome outcome;
   if (frame.truth_px.empty()) return outcome;
   outcome.measure.disparity = disparity_errors(found.disparity.disparity_px, frame.truth_px, frame.hidden, 0);
@@ -83,12 +83,11 @@ Outcome judge_consistency(const TuningFrame& frame, const Config& config, const 
   Image<std::int16_t> best_right;
   Image<Gray> aligned_right;
   Exec watched = exec;
-  watched.observe = [&](std::string_view stage, const Artifact& artifact, double) {
-    if (stage == "match") best_right = std::get<const Matches*>(artifact)->best_right.clone(exec.pool);
-    if (stage == "correct_epipolar")
-      aligned_right = std::get<const Image<std::uint8_t>*>(artifact)->clone(exec.pool);
+  watched.observe = [&](std::string_view stage, const StageResult& result, double) {
+    if (stage == "match") best_right = result.as<Matches>()->best_right.clone(exec.pool);
+    if (stage == "correct_epipolar") aligned_right = result.as<Image<std::uint8_t>>()->clone(exec.pool);
   };
-  SceneDisparity found = estimate_disparity(frame.pair, frame.rig, config, watched);
+  StereoResult found = estimate_disparity(frame.pair, frame.rig, config, watched);
   Outcome outcome;
   outcome.measure.consistency =
       consistency(frame.pair.left(), aligned_right.empty() ? frame.pair.right() : aligned_right.view(),

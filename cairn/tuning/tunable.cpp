@@ -182,7 +182,7 @@ std::vector<std::string> usual_tunables(const Config& config, bool objects) {
   if (!objects) return patterns;
   if (config.ground.source != GroundSource::off) add({"ground.margin"});
   add({"objects.min_area", "objects.min_confidence"});
-  if (config.fusion.method == FusionMethod::hierarchy) {
+  if (config.pipeline.method == Method::region_tree) {
     add({"superpixels.*"});
   } else {
     add({"intensity.*", "disparity.*"});

@@ -23,7 +23,7 @@ std::pair<Frame, io::Provenance> timed(Size size, bool is_external, const PyCali
   calibration.check(size);
   io::Provenance how{
       config.preset, config.suited(calibration.calibration).config, calibration.rig(), {}, is_external};
-  exec.observe = [&](std::string_view stage, const Artifact&, double milliseconds) {
+  exec.observe = [&](std::string_view stage, const StageResult&, double milliseconds) {
     how.timings.push_back({std::string(stage), milliseconds});
   };
   Frame frame = work(how.rig, how.config, exec);
@@ -46,8 +46,8 @@ auto segment_given(const Picture& left, const DisparityMap& map, const PyCalibra
                });
 }
 
-SceneDisparity disparity_of_pair(const Picture& left, const Picture& right, const PyCalibration& calibration,
-                                 const PyConfig& config, const Exec& exec) {
+StereoResult disparity_of_pair(const Picture& left, const Picture& right, const PyCalibration& calibration,
+                               const PyConfig& config, const Exec& exec) {
   const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
   calibration.check(pair.size());
   return estimate_disparity(pair, calibration.rig(), config.suited(calibration.calibration).config, exec);

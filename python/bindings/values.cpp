@@ -69,7 +69,7 @@ void bind_values(py::module_& m) {
   shows(grid, "cells", [](const ObstacleGrid& self) {
     return Numbers<std::int8_t>{self.cells, {self.height, self.width}};
   });
-  value_class<SceneDisparity>(m, "SceneDisparity");
+  value_class<StereoResult>(m, "SceneDisparity");
 }
 
 }  // namespace cairn::python

@@ -40,7 +40,7 @@ CAIRN_MEMBERS(Object, id, box_px, pixel_count, disparity_px, valid_share, mean_c
               confidence, disparity_sigma_px, position_in_camera_m, depth_interval_m, extent_in_camera_m,
               box_on_floor)
 CAIRN_MEMBERS(Objects, labels, _all)
-CAIRN_MEMBERS(SceneDisparity, disparity_map, ground, floor, epipolar, confidence)
+CAIRN_MEMBERS(StereoResult, disparity_map, ground, floor, epipolar, confidence)
 CAIRN_MEMBERS(LeftOut, reason, box_px, pixel_count, disparity_px, position_in_camera_m, confidence)
 CAIRN_MEMBERS(ObstacleScan, angle_min_rad, angle_increment_rad, range_max_m, _ranges)
 CAIRN_MEMBERS(ObstacleGrid, cell_size_m, _width, _height, _origin_x, _origin_y, _cells)

@@ -14,7 +14,7 @@ from ._options import config_of
 
 
 def made_by(method):
-    """A getter for a result of one fusion method; None in frames of the other."""
+    """A getter for a result of one method; None in frames of the other."""
     return lambda self: (lambda part: None if part.labels is None else part)(getattr(self._data, method))
 
 
@@ -43,14 +43,14 @@ class Frame:
     disparity_map: DisparityMap = "disparity and reject as a DisparityMap, the input of stages"
     ground: Ground = "floor plane, or why there is none"
     by_intensity: Optional[Segmentation] = (
-        "Segmentation of the image by intensity; None with fusion.method=hierarchy", made_by("by_intensity"))
+        "Segmentation of the image by intensity; None with pipeline.method=region_tree", made_by("by_intensity"))
     by_disparity: Optional[Segmentation] = (
-        "Segmentation by disparity; None with fusion.method=hierarchy", made_by("by_disparity"))
-    fusion: Optional[Fusion] = "Fusion of both; None with fusion.method=hierarchy", made_by("fusion")
+        "Segmentation by disparity; None with pipeline.method=region_tree", made_by("by_disparity"))
+    fusion: Optional[Fusion] = "Fusion of both; None with pipeline.method=region_tree", made_by("fusion")
     superpixels: Optional[Segmentation] = (
-        "superpixels as a Segmentation; None with fusion.method=overlap", made_by("superpixels"))
+        "superpixels as a Segmentation; None with pipeline.method=paper", made_by("superpixels"))
     groups: Optional[Segmentation] = (
-        "Segmentation: region 0 is the background, the others are the chosen objects; None with fusion.method=overlap",
+        "Segmentation: region 0 is the background, the others are the chosen objects; None with pipeline.method=paper",
         made_by("groups"))
     epipolar: EpipolarOffset = "row offset of the right image, an EpipolarOffset"
     rig: Optional[Rig] = "Rig used, or None", lambda self: self._how.rig

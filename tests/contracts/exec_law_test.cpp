@@ -202,7 +202,7 @@ TEST(ExecLaw, APoolAndAnObserverChangeNoBit) {
   int stages = 0;
   Exec exec = Exec::with_threads(2);
   exec.pool = Pool::make();
-  exec.observe = [&stages](std::string_view, const Artifact&, double) { ++stages; };
+  exec.observe = [&stages](std::string_view, const StageResult&, double) { ++stages; };
   for (int i = 0; i < 2; ++i)
     expect_same(segment(sample.pair(), sample.calibration.rig, config, exec), expected);
   EXPECT_GT(stages, 0);
@@ -215,11 +215,11 @@ TEST(ExecLaw, AnObserverMayEndAFrameAtAnyStage) {
     exec.pool = Pool::make();
     const Frame expected = segment(sample.pair(), sample.calibration.rig, config, exec);
     int stages = 0;
-    exec.observe = [&stages](std::string_view, const Artifact&, double) { ++stages; };
+    exec.observe = [&stages](std::string_view, const StageResult&, double) { ++stages; };
     static_cast<void>(segment(sample.pair(), sample.calibration.rig, config, exec));
     for (int last = 1; last <= stages; ++last) {
       int stage = 0;
-      exec.observe = [&](std::string_view, const Artifact&, double) {
+      exec.observe = [&](std::string_view, const StageResult&, double) {
         if (++stage == last) throw Error("enough");
       };
       EXPECT_THROW(static_cast<void>(segment(sample.pair(), sample.calibration.rig, config, exec)), Error);

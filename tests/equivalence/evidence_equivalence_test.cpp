@@ -107,7 +107,7 @@ TEST(FindEvidence, EqualsItsDefinitionOnAnyNumberOfThreads) {
       const auto expected = bits(reference::find_evidence(image, map, config));
       for (const std::uint32_t b : expected) found += b != 0xFFFFFFFFU ? 1 : 0;
       for (const int count : {1, 2, 3}) {
-        EXPECT_EQ(bits(find_evidence(image, map, noise_sigma(image), config, threads(count))), expected)
+        EXPECT_EQ(bits(find_evidence({image, {}, noise_sigma(image)}, map, config, threads(count))), expected)
             << text(size);
       }
     }
@@ -160,9 +160,9 @@ void expect_partition(const Segmentation& segmentation, const DisparityMap& map)
   }
 }
 
-Config by_hierarchy() {
+Config by_region_tree() {
   Config config;
-  config.fusion.method = FusionMethod::hierarchy;
+  config.pipeline.method = Method::region_tree;
   return config;
 }
 
@@ -172,7 +172,7 @@ void run_and_check(View<const Gray> grey, View<const Rgb> rgb, const DisparityMa
                    const std::optional<StereoRig>& rig, const Config& config) {
   const auto run = [&](int count) {
     const Exec exec = threads(count);
-    return segment(grey, rgb, {map.disparity_px.clone(), map.reject.clone()}, rig, config, exec);
+    return segment({{grey, rgb}, {}, {map.disparity_px.clone(), map.reject.clone()}}, {rig, config, exec});
   };
   const Frame frame = run(1);
   expect_partition(frame.groups, frame.disparity);
@@ -191,8 +191,8 @@ TEST(WayByHierarchy, PartitionsAnyImageWithAnyDisparities) {
       const Image<Gray> grey = random_picture(size, 8);
       const Image<Rgb> rgb = random_colours(size, 8);
       const DisparityMap map = random_map(size, 9, tenths_of_holes);
-      run_and_check(grey, {}, map, std::nullopt, by_hierarchy());
-      run_and_check(grey, rgb, map, kRig, by_hierarchy());
+      run_and_check(grey, {}, map, std::nullopt, by_region_tree());
+      run_and_check(grey, rgb, map, kRig, by_region_tree());
     }
   }
 }
@@ -207,19 +207,19 @@ TEST(WayByHierarchy, AcceptsNoiseAsImageAndDisparities) {
       if (map.reject(x, y) == Reject::none) map.disparity_px(x, y) = static_cast<float>(noise(x, y));
     }
   }
-  run_and_check(grey, {}, map, kRig, by_hierarchy());
+  run_and_check(grey, {}, map, kRig, by_region_tree());
 }
 
 TEST(WayByHierarchy, AcceptsPlainImagesWithoutTexturedDisparities) {
   for (const Size size : sizes()) {
     const Image<Gray> grey(size, Gray{128}, {});
-    run_and_check(grey, {}, random_map(size, 4, 2), kRig, by_hierarchy());
+    run_and_check(grey, {}, random_map(size, 4, 2), kRig, by_region_tree());
   }
 }
 
 TEST(WayByHierarchy, AcceptsAMissingGround) {
   const Size size{67, 53};
-  Config config = by_hierarchy();
+  Config config = by_region_tree();
   config.ground.source = GroundSource::off;
   const Image<Gray> grey = random_picture(size, 1);
   run_and_check(grey, {}, random_map(size, 1), kRig, config);
@@ -232,7 +232,7 @@ TEST(WayByHierarchy, AcceptsOptionsAtTheEndsOfTheirRanges) {
   const Image<Rgb> rgb = random_colours(size, 2);
   const DisparityMap map = random_map(size, 2);
   for (const bool most : {false, true}) {
-    Config config = by_hierarchy();
+    Config config = by_region_tree();
     const auto end = [most](float least, float greatest) { return most ? greatest : least; };
     config.evidence = {end(0, 100), end(0, 255), end(0, 100)};
     run_and_check(grey, rgb, map, kRig, config);
@@ -247,7 +247,7 @@ TEST(WayByHierarchy, AcceptsOptionsAtTheEndsOfTheirRanges) {
 }
 
 TEST(WayByHierarchy, SegmentsSmallPairs) {
-  Config config = by_hierarchy();
+  Config config = by_region_tree();
   config.match.window_size = 3;
   config.texture.window_size = 3;
   config.match.num_disparities = 2;

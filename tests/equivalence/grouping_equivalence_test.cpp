@@ -95,10 +95,10 @@ struct Scene {
 
   [[nodiscard]] View<const Rgb> rgb() const { return has_colour ? colours.view() : View<const Rgb>{}; }
   [[nodiscard]] Cues cues() const {
-    return {gray, rgb(), disparity_px, evidence_px, ground, background, 1.25F, hints};
+    return {{gray, rgb(), 1.25F}, disparity_px, evidence_px, ground, background, hints};
   }
   [[nodiscard]] Superpixels superpixels(int count) const {
-    return cut_superpixels(gray, rgb(), disparity_px, kNoise, {count}, {});
+    return cut_superpixels(LeftImage{gray, rgb(), kNoise}, disparity_px, {count}, {});
   }
 };
 
@@ -114,8 +114,9 @@ TEST(CutSuperpixels, EqualsItsDefinition) {
         for (const Target target : supported_targets()) {
           SCOPED_TRACE(text(size) + " " + std::to_string(seed) + " " + std::to_string(count) + " " +
                        std::string(name(target)));
-          const Superpixels found = cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, kNoise,
-                                                    {count}, Exec::with_threads(1, target));
+          const Superpixels found =
+              cut_superpixels(LeftImage{scene.gray, scene.rgb(), kNoise}, scene.disparity_px, {count},
+                              Exec::with_threads(1, target));
           EXPECT_EQ(found.count, expected.count);
           EXPECT_EQ(numbers(found.labels), numbers(expected.labels));
           EXPECT_EQ(numbers(found.edges), numbers(expected.edges));
@@ -131,7 +132,7 @@ TEST(CutSuperpixels, EqualsItsDefinitionIfMostBordersAreEqual) {
     const Image<Gray> gray = random_image<Gray>(size, 0, 1, seed);
     const Image<float> holes(size, kNaN, {});
     for (const int count : {2, 9}) {
-      const Superpixels found = cut_superpixels(gray, {}, holes, kNoise, {count}, {});
+      const Superpixels found = cut_superpixels(LeftImage{gray, {}, kNoise}, holes, {count}, {});
       EXPECT_EQ(numbers(found.labels),
                 numbers(reference::cut_superpixels(gray, {}, holes, kNoise, count).labels))
           << seed << ' ' << count;
@@ -144,8 +145,8 @@ TEST(CutSuperpixels, GivesTheSameOnAnyNumberOfThreads) {
   const Superpixels expected = scene.superpixels(40);
   EXPECT_EQ(expected.count, 40);
   for (const int threads : {2, 3, 8}) {
-    const Superpixels found = cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, kNoise, {40},
-                                              Exec::with_threads(threads));
+    const Superpixels found = cut_superpixels(LeftImage{scene.gray, scene.rgb(), kNoise}, scene.disparity_px,
+                                              {40}, Exec::with_threads(threads));
     EXPECT_EQ(numbers(found.labels), numbers(expected.labels));
     EXPECT_EQ(numbers(found.edges), numbers(expected.edges));
   }

@@ -190,8 +190,9 @@ Objects objects_of(const World& w, float baseline_m) {
   const Segmentation by_disparity = segment_disparity(w.disparity, {}, {}, {});
   const StereoRig rig{.focal_px = 80, .cx_px = 48, .cy_px = 35, .baseline_m = baseline_m};
   const Fusion fusion = fuse(by_intensity, by_disparity, {});
-  return locate(measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left), {}, {}),
-                w.disparity, {}, rig, {});
+  return locate(
+      measure(fusion.labels, fusion.is_floor, w.disparity, {w.left, {}, noise_sigma(w.left)}, {}, {}),
+      w.disparity, {}, rig, {});
 }
 
 TEST(RegionsProperties, DoublingTheBaselineDoublesDepthAndExtent) {
@@ -225,7 +226,7 @@ TEST(RegionsProperties, MeasureAndLocateDoNotDependOnThreads) {
   const StereoRig rig{.focal_px = 80, .cx_px = 48, .cy_px = 35, .baseline_m = 0.1F};
   const auto found = [&](const Exec& exec) {
     return locate(
-        measure(fusion.labels, fusion.is_floor, w.disparity, w.left, {}, noise_sigma(w.left), {}, exec),
+        measure(fusion.labels, fusion.is_floor, w.disparity, {w.left, {}, noise_sigma(w.left)}, {}, exec),
         w.disparity, {GroundPlane{0, 0.1F, 2}, 1, 0, Refusal::none}, rig, exec);
   };
   const Objects one = found({});

@@ -142,23 +142,23 @@ void count(Depth& depth, float px, Point p, Point centre, const Cues& cues) {
 }
 
 std::array<int, 3> colour_at(Point p, const Cues& cues) {
-  if (cues.rgb.empty()) return {cues.gray(p.x, p.y), 0, 0};
-  const Rgb c = cues.rgb(p.x, p.y);
+  if (cues.left.rgb.empty()) return {cues.left.gray(p.x, p.y), 0, 0};
+  const Rgb c = cues.left.rgb(p.x, p.y);
   return {(c.r + 2 * c.g + c.b) / 4, c.b - c.g, c.r - c.g};
 }
 
 /// The hint cell of a pixel.
 ObjectHint hint_at(Point p, const Cues& cues) {
-  return cues.hints(p.x * cues.hints.width() / cues.gray.width(),
-                    p.y * cues.hints.height() / cues.gray.height());
+  return cues.hints(p.x * cues.hints.width() / cues.left.gray.width(),
+                    p.y * cues.hints.height() / cues.left.gray.height());
 }
 
 void count(HintSums& sums, Point p, const Cues& cues) {
   if (cues.hints.empty()) return;
   const ObjectHint hint = hint_at(p, cues);
   const Point middle{
-      8 * (p.x * cues.hints.width() / cues.gray.width() - cues.hints.width() / 2) + hint.to_x,
-      8 * (p.y * cues.hints.height() / cues.gray.height() - cues.hints.height() / 2) + hint.to_y};
+      8 * (p.x * cues.hints.width() / cues.left.gray.width() - cues.hints.width() / 2) + hint.to_x,
+      8 * (p.y * cues.hints.height() / cues.left.gray.height() - cues.hints.height() / 2) + hint.to_y};
   const std::int64_t votes = std::min(std::max(hint.object + 32, 0), 64);
   sums.object += hint.object;
   sums.outline += hint.outline;
@@ -210,16 +210,16 @@ FrameCues frame_cues(const Superpixels& superpixels, const Cues& cues) {
   const auto share = [&](const PlaneMoments& m) {
     return static_cast<float>(m.n) / static_cast<float>(seen.area);
   };
-  return {.width = cues.gray.width(),
-          .height = cues.gray.height(),
-          .has_colour = !cues.rgb.empty(),
+  return {.width = cues.left.gray.width(),
+          .height = cues.left.gray.height(),
+          .has_colour = !cues.left.rgb.empty(),
           .has_ground = cues.ground.plane.has_value(),
           .has_hints = !cues.hints.empty(),
-          .cells_per_px =
-              static_cast<double>(cues.hints.size().area()) / static_cast<double>(cues.gray.size().area()),
+          .cells_per_px = static_cast<double>(cues.hints.size().area()) /
+                          static_cast<double>(cues.left.gray.size().area()),
           .cells_across = cues.hints.width(),
           .walls_and_floor = static_cast<int>(cues.background.planes.size()),
-          .noise_sigma = cues.noise_sigma,
+          .noise_sigma = cues.left.noise_sigma,
           .matched_share = share(seen.matched),
           .evidence_share = share(seen.textured),
           .nearest_px = nearest_px,
@@ -468,7 +468,7 @@ ContactCues contact_of(const Members& a, const Members& b, const Superpixels& su
     contact.length += 1;
     contact.edge_sum += edge;
     if (!cues.hints.empty()) contact.outline += std::max(hint_at(p, cues).outline, hint_at(q, cues).outline);
-    if (static_cast<float>(edge) < 4 * (1.5F + 0.8F * cues.noise_sigma)) contact.weak += 1;
+    if (static_cast<float>(edge) < 4 * (1.5F + 0.8F * cues.left.noise_sigma)) contact.weak += 1;
     contact.x2 += p.x + q.x - 2 * centre.x;
     contact.y2 += p.y + q.y - 2 * centre.y;
     const auto disparity = [&](Point at) { return steps_of(cues.disparity_px(at.x, at.y)); };

@@ -171,10 +171,10 @@ Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues
       tell(cell.above_ground.value() / 4, -1, 3);
       tell(cues.background.planes.empty() ? 0 : cell.before_background.value() / 4, -1, 3);
       tell(cell.ground.value() / nearest, 0, 2);
-      tell(cell.edge.value() / 4 / (2 * (double{cues.noise_sigma} + 2)), 0, 4);
+      tell(cell.edge.value() / 4 / (2 * (double{cues.left.noise_sigma} + 2)), 0, 4);
       tell(cell.textured.value(), 0, 1);
       tell(2.0 * y / size.height - 1, -1, 1);
-      tell(cues.rgb.empty() ? 0 : 1, 0, 1);
+      tell(cues.left.rgb.empty() ? 0 : 1, 0, 1);
     }
   }
   return input;

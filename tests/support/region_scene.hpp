@@ -57,8 +57,11 @@ struct RegionScene {
   }
 
   [[nodiscard]] Cues cues() const {
-    return {gray, rgb.empty() ? View<const Rgb>{} : rgb.view(), disparity_px, evidence_px, ground, background,
-            1};
+    return {{gray, rgb.empty() ? View<const Rgb>{} : rgb.view(), 1},
+            disparity_px,
+            evidence_px,
+            ground,
+            background};
   }
 };
 

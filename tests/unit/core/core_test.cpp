@@ -164,7 +164,7 @@ TEST(SideWork, FinishesBeforeItsDestructorReturns) {
 TEST(Later, IsComputedConcurrentlyWithItsOwnPool) {
   for (const int threads : {1, 2}) {
     Exec exec = Exec::with_threads(threads);
-    exec.observe = [](std::string_view, const Artifact&, double) {};
+    exec.observe = [](std::string_view, const StageResult&, double) {};
     Later<std::string> later(
         exec, [](const Exec& beside) { return std::string(beside.observe ? "seen" : "unseen"); });
     EXPECT_EQ(later.get(), "unseen") << threads;
@@ -189,9 +189,9 @@ TEST(Pool, HasASecondPoolThatCountsAsPartOfIt) {
 TEST(Observed, ReportsEachStageAndReturnsItsResult) {
   std::vector<std::string> stages;
   Exec exec;
-  exec.observe = [&](std::string_view stage, const Artifact& artifact, double ms) {
+  exec.observe = [&](std::string_view stage, const StageResult& result, double ms) {
     stages.emplace_back(stage);
-    EXPECT_EQ((*std::get<const Image<float>*>(artifact))(0, 0), 4.0F);
+    EXPECT_EQ((*result.as<Image<float>>())(0, 0), 4.0F);
     EXPECT_GE(ms, 0);
   };
   Observed stage(exec);

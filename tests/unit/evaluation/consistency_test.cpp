@@ -111,8 +111,8 @@ TEST(Consistency, PrefersTheSceneOfAFittingSearchRange) {
     config.match.num_disparities = num_disparities;
     Image<std::int16_t> best_right;
     Exec exec;
-    exec.observe = [&](std::string_view stage, const Artifact& artifact, double) {
-      if (stage == "match") best_right = std::get<const Matches*>(artifact)->best_right.clone();
+    exec.observe = [&](std::string_view stage, const StageResult& result, double) {
+      if (stage == "match") best_right = result.as<Matches>()->best_right.clone();
     };
     const auto found = estimate_disparity(scene.pair(), std::nullopt, config, exec);
     return consistency(scene.left, scene.right, found.disparity.disparity_px, best_right).loss();

@@ -39,13 +39,13 @@ struct Scene {
     }
   }
   [[nodiscard]] Objects measured(const ObjectsConfig& config = {}) const {
-    return measure(labels, is_background, disparity, left, {}, noise_sigma(left), config, {});
+    return measure(labels, is_background, disparity, {left, {}, noise_sigma(left)}, config, {});
   }
   [[nodiscard]] Objects measured_as_chosen(const std::vector<float>& scores, int threads = 1) const {
-    return measure(labels, scores, disparity, left, {}, noise_sigma(left), Exec::with_threads(threads));
+    return measure(labels, scores, disparity, {left, {}, noise_sigma(left)}, Exec::with_threads(threads));
   }
   [[nodiscard]] Objects measured_in_colour(View<const Rgb> rgb) const {
-    return measure(labels, is_background, disparity, left, rgb, noise_sigma(left), {}, {});
+    return measure(labels, is_background, disparity, {left, rgb, noise_sigma(left)}, {}, {});
   }
 };
 

@@ -15,7 +15,7 @@ double share_without_texture(double noise_sigma, const Config& config) {
   const auto plain = [](int, int) { return 128.0; };
   const Image<Gray> left = support::picture(size, noise_sigma, 1, plain);
   const Image<Gray> right = support::picture(size, noise_sigma, 2, plain);
-  const SceneDisparity scene = estimate_disparity(StereoPair::from(left, right), {}, config, {});
+  const StereoResult scene = estimate_disparity(StereoPair::from(left, right), {}, config, {});
   int count = 0;
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x)
@@ -35,7 +35,7 @@ TEST(PaperPreset, RefusesAPlainImageWithCameraNoise) {
 TEST(PaperPreset, IsThePublishedMethod) {
   const Config config = Config::paper();
   EXPECT_EQ(config.match.method, MatchMethod::window);
-  EXPECT_EQ(config.fusion.method, FusionMethod::overlap);
+  EXPECT_EQ(config.pipeline.method, Method::paper);
   EXPECT_EQ(config.objects.min_confidence, 0.0F);
   EXPECT_EQ(config.speckle.size, -1);
   EXPECT_EQ(config.epipolar_correction.max_rows, -1);

@@ -50,7 +50,7 @@ Image<Gray> textured_patch(Rect rect, double noise_sigma, std::uint32_t seed) {
 
 Image<float> evidence_of(const Image<Gray>& image, const DisparityMap& map,
                          const EvidenceConfig& config = {}) {
-  return find_evidence(image, map, noise_sigma(image), config, {});
+  return find_evidence({image, {}, noise_sigma(image)}, map, config, {});
 }
 
 int evidence_count(const Image<float>& evidence) {

@@ -28,7 +28,7 @@ Image<Gray> stripes(const std::vector<int>& shades, int height = 3) {
 
 Superpixels cut(const Image<Gray>& gray, int count, float disparity_px = kNaN) {
   const Image<float> disparity(gray.size(), disparity_px, {});
-  return cut_superpixels(gray, {}, disparity, 0, {count}, {});
+  return cut_superpixels(LeftImage{gray}, disparity, {count}, {});
 }
 
 std::vector<std::int64_t> first_row(const Superpixels& superpixels) {
@@ -52,7 +52,7 @@ TEST(Superpixels, AnEdgeOfColourCutsWhereBrightnessIsTheSame) {
   Image<Rgb> rgb(Size{8, 3}, Rgb{100, 100, 100}, {});
   for (int y = 0; y < 3; ++y) std::fill_n(rgb.row(y) + 4, 4, Rgb{160, 100, 40});
   const Image<float> holes(gray.size(), kNaN, {});
-  EXPECT_EQ(first_row(cut_superpixels(gray, rgb, holes, 0, {}, {})),
+  EXPECT_EQ(first_row(cut_superpixels(LeftImage{gray, rgb}, holes, {}, {})),
             (std::vector<std::int64_t>{0, 0, 0, 0, 1, 1, 1, 1}));
 }
 
@@ -60,11 +60,11 @@ TEST(Superpixels, ADisparityStepCutsAPlainImageAndHolesDoNot) {
   const Image<Gray> gray(Size{8, 3}, Gray{100}, {});
   Image<float> disparity(gray.size(), 5.0F, {});
   for (int y = 0; y < 3; ++y) std::fill_n(disparity.row(y) + 4, 4, 9.0F);
-  const Superpixels superpixels = cut_superpixels(gray, {}, disparity, 0, {}, {});
+  const Superpixels superpixels = cut_superpixels(LeftImage{gray}, disparity, {}, {});
   EXPECT_EQ(first_row(superpixels), (std::vector<std::int64_t>{0, 0, 0, 0, 1, 1, 1, 1}));
   EXPECT_EQ(superpixels.edges(4, 1), 0) << "edges are of the picture alone";
   for (int y = 0; y < 3; ++y) std::fill_n(disparity.row(y) + 4, 4, kNaN);
-  EXPECT_EQ(cut_superpixels(gray, {}, disparity, 0, {}, {}).count, 1);
+  EXPECT_EQ(cut_superpixels(LeftImage{gray}, disparity, {}, {}).count, 1);
 }
 
 TEST(Superpixels, AreFewerThanCountInASmallImage) {

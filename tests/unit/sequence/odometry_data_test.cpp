@@ -64,8 +64,8 @@ Measured measure(const Drive& drive) {
   std::size_t key = 0;
   const Exec exec;
   for (std::size_t k = 0; const auto frame = source->next(); ++k) {
-    SceneDisparity scene = estimate_disparity(
-        StereoPair::from(frame->left.gray, frame->right, frame->left.rgb), source->rig(), segmentation, exec);
+    StereoResult scene = estimate_disparity(StereoPair::from(frame->left.gray, frame->right, frame->left.rgb),
+                                            source->rig(), segmentation, exec);
     Image<Gray> left = frame->left.gray.clone();
     if (drive.black > 0 &&
         k % static_cast<std::size_t>(drive.black) == static_cast<std::size_t>(drive.black) - 1) {

@@ -629,7 +629,7 @@ struct Picture {
   }
   [[nodiscard]] std::vector<Sighting> sighted(bool with_rig = true) const {
     const StereoRig rig{.focal_px = 100, .cx_px = 20, .cy_px = 15, .baseline_m = 0.1F, .doffs_px = 0};
-    return sight(frame, left, rgb, with_rig ? std::optional(rig) : std::nullopt, {});
+    return sight(frame, {left, rgb}, with_rig ? std::optional(rig) : std::nullopt, {});
   }
 };
 

@@ -125,7 +125,7 @@ TEST(Confidence, SeparatesCorrectFromWrongMatchesWithBothPresets) {
   const Dots dots;
   for (const Config& preset : {Config(), Config::paper()}) {
     const Config config = sixteen_disparities(preset);
-    const SceneDisparity scene = estimate_disparity(dots.pair(), std::nullopt, config, {});
+    const StereoResult scene = estimate_disparity(dots.pair(), std::nullopt, config, {});
     ASSERT_EQ(scene.confidence.size(), dots.left.size());
     double right = 0;
     double wrong = 0;
@@ -163,7 +163,7 @@ TEST(Confidence, IsComputedWhicheverChecksAreOff) {
 TEST(Confidence, IsUnknownForExternalDisparities) {
   const Dots dots;
   const Image<float> given({160, 120}, 6.0F, {});
-  const Frame frame = segment(dots.left, {}, external_disparity(given, {}), std::nullopt, {}, {});
+  const Frame frame = segment({{dots.left}, {}, external_disparity(given, {})}, {std::nullopt, {}, {}});
   EXPECT_TRUE(frame.confidence.empty());
 }
 

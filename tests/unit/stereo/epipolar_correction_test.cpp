@@ -207,7 +207,7 @@ Quality quality(const Pair& pair, float max_rows) {
   Config config = Config::paper();
   config.match.num_disparities = 32;
   config.epipolar_correction.max_rows = max_rows;
-  const SceneDisparity scene = estimate_disparity(pair.get(), std::nullopt, config, {});
+  const StereoResult scene = estimate_disparity(pair.get(), std::nullopt, config, {});
   double valid = 0;
   double right = 0;
   for (int y = 0; y < kSize.height; ++y) {
@@ -235,9 +235,9 @@ TEST(EpipolarCorrection, LeavesAnAlignedPairBitForBit) {
   EXPECT_TRUE(correct_epipolar(pair.get(), {}, {.max_rows = 4}, {}).right.empty());
   Config config;
   config.epipolar_correction.max_rows = 4;
-  const SceneDisparity on = estimate_disparity(pair.get(), std::nullopt, config, {});
+  const StereoResult on = estimate_disparity(pair.get(), std::nullopt, config, {});
   config.epipolar_correction.max_rows = -1;
-  const SceneDisparity off = estimate_disparity(pair.get(), std::nullopt, config, {});
+  const StereoResult off = estimate_disparity(pair.get(), std::nullopt, config, {});
   EXPECT_EQ(first_difference(off.disparity.disparity_px, on.disparity.disparity_px), "");
   EXPECT_EQ(on.epipolar.outcome, EpipolarOutcome::aligned);
   EXPECT_EQ(off.epipolar.outcome, EpipolarOutcome::off);

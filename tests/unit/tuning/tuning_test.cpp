@@ -126,11 +126,11 @@ TEST(Tunable, TheUsualOnesTakePartInWhatTheConfigComputes) {
       const Config config = Config::preset(preset);
       const Strings names = names_of(tunables(usual_tunables(config, objects)));
       const bool semi_global = config.match.method == MatchMethod::semi_global;
-      const bool hierarchy = config.fusion.method == FusionMethod::hierarchy;
+      const bool has_tree = config.pipeline.method == Method::region_tree;
       EXPECT_EQ(has(names, "semi_global.penalty_small"), semi_global) << preset;
       EXPECT_EQ(has(names, "match.window_size"), !semi_global) << preset;
-      EXPECT_EQ(has(names, "superpixels.count"), objects && hierarchy) << preset;
-      EXPECT_EQ(has(names, "intensity.deviation_max"), objects && !hierarchy) << preset;
+      EXPECT_EQ(has(names, "superpixels.count"), objects && has_tree) << preset;
+      EXPECT_EQ(has(names, "intensity.deviation_max"), objects && !has_tree) << preset;
       EXPECT_FALSE(has(names, "match.num_disparities")) << preset;
       if (objects) continue;
       for (const std::string& name : names) EXPECT_TRUE(changes_disparities(name)) << name;
