@@ -18,6 +18,8 @@
 /// matter.
 namespace cairn {
 
+struct ObjectHint;  // cairn/regions/object_hints.hpp
+
 /// Sums over the hints of a region's pixels, in the units of ObjectHint. Each pixel votes for the centroid of its
 /// object, in 1/8 cell from the image centre, and for its size. The weight of a vote is the log-odds for an
 /// object + 2, limited to 0 … 4, in 1/16.
@@ -29,8 +31,6 @@ struct HintSums {
   void add(const HintSums& other);
   friend bool operator==(const HintSums&, const HintSums&) = default;
 };
-
-struct ObjectHint;  // cairn/regions/object_hints.hpp
 
 /// The inputs per pixel. Views of one size.
 struct Cues {
