@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the trees that score regions (cairn/regions/fitted_*.inc), and those that correct the disparity of an object
-(cairn/objects/fitted_*.inc), to the fit set.
+"""Fits the trees that score regions and those that correct the disparity of an object (cairn/fitted/*.bin) to the fit
+set.
 
 fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--hints FOLDER] [--out FOLDER] [--page FILE]
 It needs the networks that fit_hints.py writes to the work folder. fit.py TOOL DATA --ablation FILE: refits without
@@ -25,6 +25,7 @@ import sys
 import time
 import zlib
 
+import fitted_files
 import numpy as np
 
 WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # per frame, since these sets are small
@@ -108,23 +109,6 @@ def run_tool(tool, work, jobs, files, *options):
     return rows
 
 
-def source_number(value):
-    """A C++ float literal."""
-    text = f"{value:.9g}"
-    return text + ("F" if "." in text or "e" in text else ".0F")
-
-
-def source_rows(items):
-    """Items in lines of C++."""
-    line, lines = "", []
-    for item in items:
-        if len(line) + len(item) > 108:
-            lines.append(line.rstrip())
-            line = ""
-        line += item + " "
-    return "\n".join("    " + l for l in [*lines, line.rstrip()])
-
-
 class Nodes:
     """Trees in the library's layout: a node's two branches are adjacent."""
 
@@ -151,15 +135,6 @@ class Nodes:
         with open(path, "w") as out:
             out.write(f"{self.base:.9g} {len(self.roots)} {len(self.nodes)}\n" + " ".join(map(str, self.roots)) + "\n")
             out.writelines(f"{feature} {below} {value:.9g}\n" for feature, below, value in self.nodes)
-
-    def write_source(self, path, name):
-        with open(path, "w") as out:
-            out.write("// Written by lab/fit.py (./dev fit); do not edit.\n// clang-format off\n")
-            out.write(f"constexpr float k{name}Base = {source_number(self.base)};\n")
-            out.write(f"constexpr std::array<std::int16_t, {len(self.roots)}> k{name}Roots{{\n")
-            out.write(source_rows(f"{root}," for root in self.roots) + "};\n")
-            out.write(f"constexpr std::array<FittedTrees::Node, {len(self.nodes)}> k{name}Nodes{{{{\n")
-            out.write(source_rows(f"{{{f},{b},{source_number(v)}}}," for f, b, v in self.nodes) + "}};\n")
 
 
 def by_edges():
@@ -528,14 +503,12 @@ def main():
     if arguments.ablation:
         return ablation(fitting, validation, arguments.ablation)
 
-    def write_source(kind, name, folder):
+    def write_fitted(kind):
         if not arguments.out:
             return
         lines = fitting.model(kind, "all").read_text().split("\n")
-        nodes = Nodes(float(lines[0].split()[0]))
-        nodes.roots = [int(v) for v in lines[1].split()]
-        nodes.nodes = [(int(f), int(b), float(v)) for f, b, v in (line.split() for line in lines[2:] if line)]
-        nodes.write_source(arguments.out / folder / f"fitted_{kind}.inc", name)
+        nodes = [(int(f), int(b), float(v)) for f, b, v in (line.split() for line in lines[2:] if line)]
+        fitted_files.write_trees(arguments.out / f"{kind}.bin", float(lines[0].split()[0]), [int(v) for v in lines[1].split()], nodes)
 
     if arguments.distances:
         fitting.of_library = True
@@ -553,10 +526,10 @@ def main():
             print(reports, flush=True)
             if arguments.page and score == arguments.min_scores.split(",")[0]:
                 arguments.page.write_text(page(fitting, sets, reports, score))
-        write_source("same_thing", "SameThing", "grouping")
-        write_source("whole_object", "WholeObject", "grouping")
+        write_fitted("same_thing")
+        write_fitted("whole_object")
     print(distances)
-    write_source("disparity_bias", "DisparityBias", "objects")
+    write_fitted("disparity_bias")
     if arguments.distances_page:
         arguments.distances_page.write_text(page_of_distances(fitting, sets, distances))
     say("done")

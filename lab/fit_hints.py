@@ -17,9 +17,10 @@ import subprocess
 import sys
 import time
 
+import fitted_files
 import numpy as np
 
-from fit import HALVES, SEED, WEIGHTS, fit_sets, fold_of, jobs_of, run_tool, source_number, source_rows
+from fit import HALVES, SEED, WEIGHTS, fit_sets, fold_of, jobs_of, run_tool
 
 BATCH = 12
 RATE, DECAY = 3e-3, 2e-3
@@ -276,18 +277,11 @@ def write(layers, path):
                 out.write(" ".join(f"{v:.9g}" if part == 3 else str(v) for v in layer[part]) + "\n")
 
 
-def write_source(layers, path):
-    def array(kind, name, values):
-        values = list(values)
-        return f"constexpr std::array<{kind}, {len(values)}> kFitted{name}{{\n{source_rows(f'{v},' for v in values)}}};\n"
+def write_fitted(layers, path):
+    def all_of(part):
+        return [v for layer in layers for v in layer[part]]
 
-    with open(path, "w") as out:
-        out.write("// Written by lab/fit_hints.py (./dev fit); do not edit.\n// clang-format off\n")
-        shapes = "\n".join("    {" + ", ".join(map(str, shape)) + "}," for shape, _, _, _ in layers)
-        out.write(f"constexpr std::array<HintLayer, {len(layers)}> kFittedLayers{{{{\n{shapes}}}}};\n")
-        out.write(array("std::int8_t", "Weights", (v for layer in layers for v in layer[1])))
-        out.write(array("std::int32_t", "Bias", (v for layer in layers for v in layer[2])))
-        out.write(array("float", "Scale", (source_number(v) for layer in layers for v in layer[3])))
+    fitted_files.write_network(path, [shape for shape, _, _, _ in layers], all_of(1), all_of(2), all_of(3))
 
 
 def fit_one(arguments, jobs, half):
@@ -301,7 +295,7 @@ def fit_one(arguments, jobs, half):
     layers = rounded(net, [frames[i] for i in takes[::5]])
     write(layers, arguments.work / f"hints_{half}")
     if half == "all" and arguments.out:
-        write_source(layers, arguments.out / "grouping" / "fitted_hints.inc")
+        write_fitted(layers, arguments.out / "hints.bin")
 
 
 def main():
@@ -310,7 +304,7 @@ def main():
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--rooms", type=pathlib.Path, help="more rooms, rendered by tools/render")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
-    parser.add_argument("--out", type=pathlib.Path, help="where the source is written (cairn)")
+    parser.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
     parser.add_argument("--steps", type=int, default=4800)
     parser.add_argument("--only", help="one half, or all: results in the work folder are reused")
     arguments = parser.parse_args()

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cairn/core/ids.hpp>
 #include <cairn/core/parallel.hpp>
+#include <cairn/fitted/fitted.hpp>
 #include <cairn/objects/disparity_bias.hpp>
 #include <cairn/objects/object_match.hpp>
 #include <cairn/objects/ranks.hpp>
@@ -12,8 +13,6 @@
 
 namespace cairn {
 namespace {
-
-#include <cairn/objects/fitted_disparity_bias.inc>
 
 constexpr std::array<std::string_view, kBiasFeatures> kNames{
     "share of pixels with a disparity",
@@ -251,7 +250,7 @@ std::vector<BiasFeatures> bias_features(const Objects& objects, const std::vecto
 }
 
 const FittedTrees& disparity_bias_trees() {
-  static const FittedTrees trees(kDisparityBiasBase, kDisparityBiasRoots, kDisparityBiasNodes);
+  static const FittedTrees trees = load_trees(fitted::disparity_bias());
   return trees;
 }
 

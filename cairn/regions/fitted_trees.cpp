@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/ids.hpp>
+#include <cairn/fitted/fitted.hpp>
 #include <cairn/regions/cue_kernels.hpp>
 #include <cairn/regions/fitted_trees.hpp>
 #include <utility>
 
 namespace cairn {
 namespace {
-
-#include <cairn/regions/fitted_same_thing.inc>
-#include <cairn/regions/fitted_whole_object.inc>
 
 // A step down depends on the previous one, so several trees are walked concurrently.
 constexpr std::size_t kAtOnce = 8;
@@ -90,13 +88,20 @@ std::vector<float> FittedTrees::operator()(std::span<const std::span<const float
   return sums;
 }
 
+FittedTrees load_trees(std::span<const std::byte> file) {
+  fitted::Reader reader(file, "tree");
+  const float base = reader.next<float>().front();
+  const auto roots = reader.next<std::int16_t>();
+  return {base, roots, reader.next<FittedTrees::Node>()};
+}
+
 const FittedTrees& same_thing_trees() {
-  static const FittedTrees trees(kSameThingBase, kSameThingRoots, kSameThingNodes);
+  static const FittedTrees trees = load_trees(fitted::same_thing());
   return trees;
 }
 
 const FittedTrees& whole_object_trees() {
-  static const FittedTrees trees(kWholeObjectBase, kWholeObjectRoots, kWholeObjectNodes);
+  static const FittedTrees trees = load_trees(fitted::whole_object());
   return trees;
 }
 

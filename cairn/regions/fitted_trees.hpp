@@ -49,6 +49,9 @@ class FittedTrees {
   std::vector<float> leaves_;
 };
 
+/// The trees of a file of lab/fitted_files.py, see cairn/fitted. Throws Error for another kind of file.
+FittedTrees load_trees(std::span<const std::byte> file);
+
 /// The log-odds that two neighbouring regions belong to one object, from merge_features().
 const FittedTrees& same_thing_trees();
 /// The log-odds that a region is exactly one whole object, from object_features().

@@ -5,6 +5,7 @@
 #include <cairn/core/ids.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/scratch.hpp>
+#include <cairn/fitted/fitted.hpp>
 #include <cairn/regions/convolution_kernels.hpp>
 #include <cairn/regions/framed_image.hpp>
 #include <cairn/regions/object_hints.hpp>
@@ -12,15 +13,6 @@
 
 namespace cairn {
 namespace {
-
-#include <cairn/regions/fitted_hints.inc>
-
-constexpr std::size_t count_of_weights() {
-  std::size_t count = 0;
-  for (const HintLayer& l : kFittedLayers) count += l.weights();
-  return count;
-}
-static_assert(kFittedLayers.size() == kHintLayers && kFittedWeights.size() == count_of_weights());
 
 constexpr int kGrain = 4;         // rows
 constexpr int kMostLogOdds = 96;  // 1/16
@@ -202,8 +194,24 @@ const kernels::Convolution& HintNetwork::layer(std::size_t i) const {
   return numbers_->layers.at(i);
 }
 
+HintNetwork load_network(std::span<const std::byte> file) {
+  fitted::Reader reader(file, "net ");
+  const auto numbers = reader.next<std::int32_t>();
+  std::vector<HintLayer> layers;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + 5 <= numbers.size(); i += 5) {
+    layers.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3], numbers[i + 4]});
+    count += layers.back().weights();
+  }
+  const auto weights = reader.next<std::int8_t>();
+  if (layers.size() != kHintLayers || weights.size() != count)
+    throw Error("the fitted network has other layers than the library");
+  const auto bias = reader.next<std::int32_t>();
+  return {layers, weights, bias, reader.next<float>()};
+}
+
 const HintNetwork& hint_network() {
-  static const HintNetwork network(kFittedLayers, kFittedWeights, kFittedBias, kFittedScale);
+  static const HintNetwork network = load_network(fitted::hints());
   return network;
 }
 

@@ -67,6 +67,9 @@ class HintNetwork {
   std::unique_ptr<Numbers> numbers_;
 };
 
+/// The network of a file of lab/fitted_files.py, see cairn/fitted. Throws Error for another kind of file, or if its layers
+/// are not those of the library.
+HintNetwork load_network(std::span<const std::byte> file);
 /// The network of the library, fitted by lab/fit_hints.py.
 const HintNetwork& hint_network();
 

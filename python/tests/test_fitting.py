@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""lab/: trees as sources and files, reports, the fate of a missed object. Nothing is fitted here."""
+"""lab/: trees as files, reports, the fate of a missed object. Nothing is fitted here."""
 
 import importlib.util
 import pathlib
 import re
+import struct
 import subprocess
+import sys
 import types
 
 import numpy as np
 import pytest
 from conftest import SOURCE
+
+
+sys.path.insert(0, str(SOURCE / "lab"))
 
 
 def load(name):
@@ -45,17 +50,21 @@ def test_the_branches_of_a_node_are_adjacent_yes_first():
     assert nodes.nodes == [(3, 1, 1.5), (0, 3, -2), (-1, 0, 0.25), (-1, 0, -1), (-1, 0, 3), (-1, 0, 7)]
 
 
-def test_trees_are_written_for_the_tool_and_as_source_code(tmp_path):
-    trees().write(tmp_path / "trees")
+def test_trees_are_written_for_the_tool_and_for_the_library(tmp_path):
+    nodes = trees()
+    nodes.write(tmp_path / "trees")
     assert (tmp_path / "trees").read_text() == "0.5 2 6\n0 5\n3 1 1.5\n0 3 -2\n-1 0 0.25\n-1 0 -1\n-1 0 3\n-1 0 7\n"
-    trees().write_source(tmp_path / "source", "SameThing")
-    assert (tmp_path / "source").read_text().splitlines()[2:] == [
-        "constexpr float kSameThingBase = 0.5F;",
-        "constexpr std::array<std::int16_t, 2> kSameThingRoots{",
-        "    0, 5,};",
-        "constexpr std::array<FittedTrees::Node, 6> kSameThingNodes{{",
-        "    {3,1,1.5F}, {0,3,-2.0F}, {-1,0,0.25F}, {-1,0,-1.0F}, {-1,0,3.0F}, {-1,0,7.0F},}};",
-    ]
+    fit.fitted_files.write_trees(tmp_path / "trees.bin", nodes.base, nodes.roots, nodes.nodes)
+    assert (tmp_path / "trees.bin").read_bytes() == (
+        b"cairn 1 tree" + struct.pack("<If", 1, 0.5) + struct.pack("<I2h", 2, 0, 5) + struct.pack("<I", 6)
+        + b"".join(struct.pack("<hhf", *node) for node in nodes.nodes))
+
+
+def test_arrays_of_fitted_files_begin_at_whole_words(tmp_path):
+    fit.fitted_files.write_network(tmp_path / "net.bin", [(1, 1, 3, 2, 0)], [-1, 2, 3], [7], [0.25])
+    assert (tmp_path / "net.bin").read_bytes() == (
+        b"cairn 1 net " + struct.pack("<I5i", 5, 1, 1, 3, 2, 0) + struct.pack("<I3bx", 3, -1, 2, 3)
+        + struct.pack("<Ii", 1, 7) + struct.pack("<If", 1, 0.25))
 
 
 def test_a_scene_is_in_one_fold_at_all_sizes():
