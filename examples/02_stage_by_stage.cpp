@@ -77,9 +77,8 @@ void run_paper(const StereoPair& pair, const std::optional<StereoRig>& rig, cons
   const Fusion fusion = fuse(by_intensity, by_disparity, exec);
 
   // Choose the fused regions that are objects, and measure them.
-  const float noise = noise_sigma(pair.left(), exec);
-  Objects objects = measure(fusion.labels, fusion.is_floor, disparity, pair.left(), pair.left_rgb(), noise,
-                            config.objects, exec);
+  const LeftImage left{pair.left(), pair.left_rgb(), noise_sigma(pair.left(), exec)};
+  Objects objects = measure(fusion.labels, fusion.is_floor, disparity, left, config.objects, exec);
   objects = locate(std::move(objects), disparity, ground, rig, exec);
   // [/stages]
 
@@ -92,7 +91,7 @@ void run_paper(const StereoPair& pair, const std::optional<StereoRig>& rig, cons
 /// As in cairn/pipeline/region_tree.cpp.
 void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, const Config& config,
                  const Exec& exec) {
-  // [stages_by_hierarchy]
+  // [stages_by_region_tree]
   // Undo a vertical shift of the right image, caused by vibration; then match with smoothness along paths.
   const EpipolarCorrection aligned = correct_epipolar(given, config.match, config.epipolar_correction, exec);
   const StereoPair pair =
@@ -103,8 +102,8 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   DisparityMap disparity = combine(refine_subpixel(matches, config.subpixel, exec), {inconsistent}, exec);
 
   // Disparities supported by texture show the scene: its ground, reflections in it, its walls.
-  const float noise = noise_sigma(pair.left(), exec);
-  const Image<float> evidence_px = find_evidence(pair.left(), disparity, noise, config.evidence, exec);
+  const LeftImage left{pair.left(), pair.left_rgb(), noise_sigma(pair.left(), exec)};
+  const Image<float> evidence_px = find_evidence(left, disparity, config.evidence, exec);
   const Ground seen = fit_ground(evidence_px, rig, config.ground, exec, pair.left());
   const Ground ground = likely_ground(seen, disparity, rig, config.ground, exec, evidence_px, pair.left());
   disparity = reject_below_ground(std::move(disparity), ground, rig, config.ground, exec);
@@ -113,9 +112,8 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const Image<float> seen_px = floor_under_reflections(disparity, ground, exec);
 
   // Superpixels, a network's hints for them, and a tree of regions: the most similar pair merges first.
-  const Superpixels superpixels =
-      cut_superpixels(pair.left(), pair.left_rgb(), seen_px, noise, config.superpixels, exec);
-  Cues cues{pair.left(), pair.left_rgb(), seen_px, evidence_px, ground, background, noise};
+  const Superpixels superpixels = cut_superpixels(left, seen_px, config.superpixels, exec);
+  Cues cues{left, seen_px, evidence_px, ground, background};
   const Image<ObjectHint> hints = hint_objects(superpixels.edges, cues, exec);
   cues.hints = hints;
   const MergeTree tree = grow_merge_tree(superpixels, cues, same_thing_trees(), exec);
@@ -124,14 +122,13 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const ChosenObjects chosen =
       choose_objects(tree, whole_object_trees(), limits_of(config.objects, pair.size()), exec);
   const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
-  Objects objects =
-      measure(groups.labels, chosen.scores, disparity, pair.left(), pair.left_rgb(), noise, exec);
+  Objects objects = measure(groups.labels, chosen.scores, disparity, left, exec);
   objects =
       refine_objects(std::move(objects), disparity, pair.left(), pair.right(), disparity_bias_trees(), exec);
   objects = locate(std::move(objects), disparity, ground, rig, exec);
   const Image<float> confidence =
       estimate_confidence(matches, disparity, confidence_model(config.match.method), exec);
-  // [/stages_by_hierarchy]
+  // [/stages_by_region_tree]
 
   print_holes(disparity, ground);
   std::printf("walls: %zu; superpixels: %d, regions in their tree: %zu; objects: %zu\n",

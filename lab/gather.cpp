@@ -280,13 +280,12 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   config.match.num_disparities = frame.num_disparities;
   const Exec exec;
   const View<const Gray> left = frame.images.left.gray;
-  const View<const Rgb> rgb = grey ? View<const Rgb>{} : frame.images.left.rgb.view();
   Observed stage(exec);
-  Given given{left, rgb, frame.images.right.gray, {}};
-  SuperpixelScene cut = cut_scene(given, frame.rig, config, nullptr, exec, stage);
+  FrameInput in{{left, grey ? View<const Rgb>{} : frame.images.left.rgb.view()}, frame.images.right.gray};
+  RegionCandidates cut = superpixel_candidates(in, {frame.rig, config, exec}, nullptr, stage);
   const Superpixels& superpixels = cut.superpixels;
   if (files.inputs.is_open()) {
-    record_input(files.inputs, job, hint_input(superpixels.edges, cut.cues(given), exec), frame);
+    record_input(files.inputs, job, hint_input(superpixels.edges, cut.cues(in.left), exec), frame);
     std::cout << job << '\n';
     return;
   }
@@ -295,8 +294,8 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   if (files.pairs.is_open())
     on_judged = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
   const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
-  cut.hints = hint_objects(hint_input(superpixels.edges, cut.cues(given), exec), network, exec);
-  const MergeTree tree = grow_merge_tree(superpixels, cut.cues(given), same_thing, exec, on_judged);
+  cut.hints = hint_objects(hint_input(superpixels.edges, cut.cues(in.left), exec), network, exec);
+  const MergeTree tree = grow_merge_tree(superpixels, cut.cues(in.left), same_thing, exec, on_judged);
   config.objects.min_confidence = min_score;
   const ChosenObjects chosen = choose_objects(tree, whole_object, limits_of(config.objects, left.size()));
   const double milliseconds = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
@@ -304,10 +303,10 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   if (files.pairs.is_open()) record_pairs(files.pairs, job, pairs, truth);
   if (files.regions.is_open()) record_regions(files.regions, job, tree, truth, left.size());
   if (files.bias.is_open() && !frame.truth_px.empty() && !frame.partial && frame.rig) {
-    const Segmentation groups = groups_of(superpixels, chosen, cut.scene.found.disparity, exec);
-    const Objects objects = measure(groups.labels, chosen.scores, cut.scene.found.disparity, left, rgb,
-                                    cut.scene.noise_sigma, exec);
-    record_bias(files.bias, job, frame, objects, cut.scene.found.disparity, cut.scene.right_of(given), exec);
+    const DisparityMap& disparity = cut.match.stereo.disparity;
+    const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
+    const Objects objects = measure(groups.labels, chosen.scores, disparity, in.left, exec);
+    record_bias(files.bias, job, frame, objects, disparity, in.right, exec);
   }
   Image<ObjectId> ours(left.size());
   for (int y = 0; y < left.height(); ++y) {

@@ -42,7 +42,7 @@ auto segment_given(const Picture& left, const DisparityMap& map, const PyCalibra
   return timed(left.gray().size(), true, calibration, config, exec,
                [&](const auto& rig, const Config& c, const Exec& e) {
                  DisparityMap own{map.disparity_px.clone(e.pool), map.reject.clone(e.pool)};
-                 return segment(left.gray(), left.rgb(), std::move(own), rig, c, e);
+                 return segment({{left.gray(), left.rgb()}, {}, std::move(own)}, {rig, c, e});
                });
 }
 

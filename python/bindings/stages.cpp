@@ -148,7 +148,7 @@ Image<ObjectHint> hints(const Superpixels& superpixels, View<const Gray> left, V
                         const DisparityMap& disparity, View<const float> evidence_px, const Ground& ground,
                         const Background& background, float noise, const Exec& exec) {
   return hint_objects(superpixels.edges,
-                      {left, rgb, disparity.disparity_px, evidence_px, ground, background, noise}, exec);
+                      {{left, rgb, noise}, disparity.disparity_px, evidence_px, ground, background}, exec);
 }
 
 Numbers<std::int16_t> hint_numbers(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
@@ -171,7 +171,7 @@ MergeTree merge_tree(const Superpixels& superpixels, View<const Gray> left, View
                      const Background& background, float noise, const Exec& exec) {
   const Image<ObjectHint> found =
       hints(superpixels, left, rgb, disparity, evidence_px, ground, background, noise, exec);
-  const Cues cues{left, rgb, disparity.disparity_px, evidence_px, ground, background, noise, found};
+  const Cues cues{{left, rgb, noise}, disparity.disparity_px, evidence_px, ground, background, found};
   return grow_merge_tree(superpixels, cues, same_thing_trees(), exec);
 }
 
@@ -224,7 +224,7 @@ void bind_stages(py::module_& m) {
   stage(m, "noise_sigma", &noise_sigma);
   stage(
       m, "find_evidence", +[](View<const Gray> left, const DisparityMap& map, float noise, const Exec& exec) {
-        return find_evidence(left, map, noise, {}, exec);
+        return find_evidence({left, {}, noise}, map, {}, exec);
       });
   stage(m, "reject_speckles", &reject_speckles);
   stage(
@@ -261,8 +261,12 @@ void bind_stages(py::module_& m) {
   stage(m, "segment_intensity", &segment_intensity);
   stage(m, "segment_disparity", &segment_disparity);
 
-  stage<Superpixels, View<const Gray>, View<const Rgb>, View<const float>>(m, "cut_superpixels",
-                                                                           &cut_superpixels);
+  stage(
+      m, "cut_superpixels",
+      +[](View<const Gray> left, View<const Rgb> rgb, View<const float> disparity_px, float noise,
+          const SuperpixelsConfig& config, const Exec& exec) {
+        return cut_superpixels(LeftImage{left, rgb, noise}, disparity_px, config, exec);
+      });
   stage(m, "segmentation_of", &segmentation_of);
   stage(m, "hint_objects", &hint_numbers);
   stage(m, "grow_merge_tree", &merge_tree);
@@ -273,8 +277,19 @@ void bind_stages(py::module_& m) {
   stage(m, "groups_of", &groups_of);
 
   stage(m, "fuse", &fuse);
-  stage<Objects, View<const RegionId>, const std::vector<bool>&>(m, "measure", &measure);
-  stage<Objects, View<const RegionId>, const std::vector<float>&>(m, "measure_chosen", &measure);
+  stage(
+      m, "measure",
+      +[](View<const RegionId> candidates, const std::vector<bool>& is_background,
+          const DisparityMap& disparity, View<const Gray> left, View<const Rgb> rgb, float noise,
+          const ObjectsConfig& config, const Exec& exec) {
+        return measure(candidates, is_background, disparity, {left, rgb, noise}, config, exec);
+      });
+  stage(
+      m, "measure_chosen",
+      +[](View<const RegionId> chosen, const std::vector<float>& scores, const DisparityMap& disparity,
+          View<const Gray> left, View<const Rgb> rgb, float noise, const Exec& exec) {
+        return measure(chosen, scores, disparity, {left, rgb, noise}, exec);
+      });
   stage(
       m, "refine_objects",
       +[](Objects objects, const DisparityMap& disparity, View<const Gray> left, View<const Gray> right,

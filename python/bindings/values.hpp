@@ -44,7 +44,18 @@ CAIRN_MEMBERS(StereoResult, disparity_map, ground, floor, epipolar, confidence)
 CAIRN_MEMBERS(LeftOut, reason, box_px, pixel_count, disparity_px, position_in_camera_m, confidence)
 CAIRN_MEMBERS(ObstacleScan, angle_min_rad, angle_increment_rad, range_max_m, _ranges)
 CAIRN_MEMBERS(ObstacleGrid, cell_size_m, _width, _height, _origin_x, _origin_y, _cells)
-CAIRN_MEMBERS(Frame, disparity_map, ground, floor, by_intensity, by_disparity, fusion, superpixels, groups,
-              objects, space, left_out, epipolar, confidence)
+/// A frame has the members of its stereo result, too.
+template <>
+struct Members<Frame> {
+  static constexpr std::string_view kNames =
+      "disparity_map, ground, floor, epipolar, confidence, by_intensity, by_disparity, fusion, superpixels, "
+      "groups, objects, space, left_out";
+  template <class Value>
+  static auto of(Value& value) {
+    return std::tie(value.disparity, value.ground, value.floor, value.epipolar, value.confidence,
+                    value.by_intensity, value.by_disparity, value.fusion, value.superpixels, value.groups,
+                    value.objects, value.space, value.left_out);
+  }
+};
 
 }  // namespace cairn::python
