@@ -2,33 +2,24 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <cairn/output/drawing.hpp>
 #include <cairn/output/overlay.hpp>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
 namespace cairn::io {
 namespace {
 
-constexpr int kLegibleWidth = 640;  // px; narrower images are enlarged to about this
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr int kLegibleWidth = 640;    // px; narrower images are enlarged to about this
+constexpr float kLabelHeight = 9.5F;  // px, of a capital letter
+constexpr float kLegendHeightOfText = 9;
 
 int enlargement(Size size) {
   return std::clamp((kLegibleWidth + size.width / 2) / size.width, 1, 4);
-}
-
-/// An image as cv::Mat with channels in the order R, G, B.
-cv::Mat matrix(Image<Rgb>& image) {
-  return {image.height(), image.width(), CV_8UC3, image.row(0),
-          static_cast<std::size_t>(image.view().stride()) * sizeof(Rgb)};
-}
-
-cv::Scalar scalar(Rgb c) {
-  return {double(c.r), double(c.g), double(c.b)};
 }
 
 std::uint8_t mixed(std::uint8_t a, std::uint8_t b, float share_of_b) {
@@ -54,31 +45,22 @@ std::string number_text(const char* format, float value) {
   return buffer.data();
 }
 
-void write(const cv::Mat& canvas, const std::string& text, cv::Point at, double scale, Rgb colour) {
-  cv::putText(canvas, text, at, kFont, scale, scalar({0, 0, 0}), 3, cv::LINE_AA);
-  cv::putText(canvas, text, at, kFont, scale, scalar(colour), 1, cv::LINE_AA);
-}
-
 /// A label at a point.
 struct Label {
   std::string text;
-  cv::Point middle;
-  cv::Size extent;  // above the baseline
-  int below = 0;
+  drawing::Point middle;
+  drawing::TextExtent extent;
 };
 
-constexpr double kLabelScale = 0.45;
-
-Label label_at(cv::Point middle, std::string text) {
-  Label label{std::move(text), middle, {}, 0};
-  label.extent = cv::getTextSize(label.text, kFont, kLabelScale, 1, &label.below);
-  return label;
+Label label_at(drawing::Point middle, std::string text) {
+  const drawing::TextExtent extent = drawing::text_extent(text, kLabelHeight);
+  return {std::move(text), middle, extent};
 }
 
 /// The area that it covers when centred on its point.
 Rect covered(const Label& label) {
-  return {label.middle.x - label.extent.width / 2, label.middle.y - label.extent.height / 2,
-          label.extent.width, label.extent.height + label.below};
+  return {label.middle.x - label.extent.width / 2, label.middle.y - label.extent.above / 2,
+          label.extent.width, label.extent.above + label.extent.below};
 }
 
 Rect inside(Rect label, Size picture) {
@@ -92,21 +74,23 @@ bool overlap(const Rect& a, const Rect& b) {
 }
 
 /// Places labels at their points, or next to them with a line if others are there already.
-void write_labels(const cv::Mat& canvas, const std::vector<Label>& labels) {
+void write_labels(Image<Rgb>& canvas, const std::vector<Label>& labels) {
   std::vector<Rect> wanted;
   wanted.reserve(labels.size());
   for (const Label& label : labels) wanted.push_back(covered(label));
-  const std::vector<Rect> places = place_labels(wanted, {canvas.cols, canvas.rows});
+  const std::vector<Rect> places = place_labels(wanted, canvas.size());
   const Rgb white{255, 255, 255};
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const Rect& place = places[i];
-    const cv::Point middle(place.x + place.width / 2, place.y + place.height / 2);
-    const cv::Rect box(place.x, place.y, place.width, place.height);
-    if (!box.contains(labels[i].middle))
-      cv::line(canvas, middle, labels[i].middle, scalar(white), 1, cv::LINE_AA);
+    const drawing::Point at = labels[i].middle;
+    const bool is_inside =
+        at.x >= place.x && at.x < place.x + place.width && at.y >= place.y && at.y < place.y + place.height;
+    if (!is_inside)
+      drawing::draw_line(canvas, {place.x + place.width / 2, place.y + place.height / 2}, at, white);
   }
   for (std::size_t i = 0; i < labels.size(); ++i)
-    write(canvas, labels[i].text, {places[i].x, places[i].y + labels[i].extent.height}, kLabelScale, white);
+    drawing::draw_text(canvas, labels[i].text, {places[i].x, places[i].y + labels[i].extent.above},
+                       kLabelHeight, white);
 }
 
 /// The enlarged image, with its background faded to grey.
@@ -118,10 +102,7 @@ Image<Rgb> enlarged(View<const Gray> left, View<const Rgb> left_rgb, int factor)
       colour(x, y) = left_rgb.empty() ? Rgb{grey, grey, grey} : left_rgb(x, y);
     }
   }
-  Image<Rgb> large({left.width() * factor, left.height() * factor});
-  cv::Mat target = matrix(large);
-  cv::resize(matrix(colour), target, target.size(), 0, 0, cv::INTER_CUBIC);
-  return large;
+  return drawing::enlarged(colour, factor);
 }
 
 /// The gain that makes the brightest hundredth of the image bright.
@@ -161,22 +142,19 @@ constexpr int kStripHeight = 24;
 
 /// The image with a colour legend below it.
 Image<Rgb> with_legend(Image<Rgb> picture, bool in_metres, bool has_floor, float brightened) {
-  constexpr double kScale = 0.42;
   constexpr int kGap = 18;
   Image<Rgb> whole({picture.width(), picture.height() + kStripHeight}, Rgb{15, 15, 15}, {});
   for (int y = 0; y < picture.height(); ++y) std::copy_n(picture.row(y), picture.width(), whole.row(y));
-  const cv::Mat canvas = matrix(whole);
   const Rgb white{235, 235, 235};
   const int base = whole.height() - 8;
   int x = 8;
   const auto entry = [&](const std::optional<Rgb>& chip, const std::string& text) {
     if (chip) {
-      cv::rectangle(canvas, cv::Rect(x, base - 10, 14, 12), scalar(*chip), cv::FILLED);
+      drawing::fill(whole, {x, base - 10, 14, 12}, *chip);
       x += 20;
     }
-    write(canvas, text, {x, base}, kScale, white);
-    int below = 0;
-    x += cv::getTextSize(text, kFont, kScale, 1, &below).width + kGap;
+    drawing::draw_text(whole, text, {x, base}, kLegendHeightOfText, white);
+    x += drawing::text_extent(text, kLegendHeightOfText).width + kGap;
   };
   entry(object_colour(ObjectId{1}), std::string("object, id: ") + (in_metres ? "distance" : "disparity"));
   if (has_floor) entry(kFloorTint, "floor");
@@ -233,20 +211,21 @@ constexpr int kLegendWidth = 190;
 constexpr int kLegendRow = 20;
 constexpr int kLegendHeight = kLegendRow * (int(kReasons.size()) + 6) + 10;
 
-void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, DisparitySpan span,
+void draw_legend(Image<Rgb>& canvas, int left, const DisparityMap& map, DisparitySpan span,
                  const std::array<Rgb, 256>& colours, const std::optional<StereoRig>& rig, Reject in_force) {
-  constexpr double kScale = 0.42;
   constexpr int kBarRows = 4;
-  const Rgb white{235, 235, 235};
+  const auto write = [&](const std::string& text, drawing::Point at) {
+    drawing::draw_text(canvas, text, at, kLegendHeightOfText, {235, 235, 235});
+  };
   const int bar_top = 10;
   const int bar_height = kBarRows * kLegendRow;
   for (int y = 0; y < bar_height; ++y) {
     const auto c = colours[static_cast<std::size_t>(255 - y * 255 / (bar_height - 1))];
-    cv::line(canvas, {left + 10, bar_top + y}, {left + 24, bar_top + y}, scalar(c));
+    drawing::fill(canvas, {left + 10, bar_top + y, 15, 1}, c);
   }
   for (int i = 0; i <= 2; ++i) {
     const float d = span.high + (span.low - span.high) * static_cast<float>(i) / 2;
-    write(canvas, scale_text(d, rig), {left + 32, bar_top + 10 + i * (bar_height - 14) / 2}, kScale, white);
+    write(scale_text(d, rig), {left + 32, bar_top + 10 + i * (bar_height - 14) / 2});
   }
   std::array<std::int64_t, kReasons.size()> counts{};
   std::int64_t valid = 0;
@@ -265,12 +244,12 @@ void draw_legend(const cv::Mat& canvas, int left, const DisparityMap& map, Dispa
                        100 * static_cast<float>(count) / static_cast<float>(map.reject.size().area()));
   };
   int y = bar_top + bar_height + kLegendRow;
-  write(canvas, "valid" + percent(valid), {left + 10, y}, kScale, white);
+  write("valid" + percent(valid), {left + 10, y});
   for (std::size_t i = 0; i < kReasons.size(); ++i) {
     if (!has(in_force, kReasons[i].bit) && counts[i] == 0) continue;
     y += kLegendRow;
-    cv::rectangle(canvas, cv::Rect(left + 10, y - 10, 14, 12), scalar(kReasons[i].colour), cv::FILLED);
-    write(canvas, std::string(kReasons[i].label) + percent(counts[i]), {left + 32, y}, kScale, white);
+    drawing::fill(canvas, {left + 10, y - 10, 14, 12}, kReasons[i].colour);
+    write(std::string(kReasons[i].label) + percent(counts[i]), {left + 32, y});
   }
 }
 
@@ -283,16 +262,34 @@ Rgb object_colour(ObjectId id) {
 }
 
 LabelPlace label_place(View<const std::uint8_t> mask) {
-  // Padded, so that the image border counts as an outline.
-  cv::Mat framed(mask.height() + 2, mask.width() + 2, CV_8UC1, cv::Scalar(0));
-  for (int y = 0; y < mask.height(); ++y) {
-    std::copy_n(mask.row(y), mask.width(), framed.ptr<std::uint8_t>(y + 1) + 1);
+  // Distances from the outline by steps of 5 and 7 (Borgefors 1986). Padded, so that the image border counts as one.
+  constexpr int kStraight = 5;
+  constexpr int kDiagonal = 7;
+  const int width = mask.width();
+  const int height = mask.height();
+  Image<int> distance({width + 2, height + 2}, 0, {});
+  LabelPlace best{};
+  int most = 0;
+  for (int y = 1; y <= height; ++y) {
+    for (int x = 1; x <= width; ++x) {
+      if (mask(x - 1, y - 1) == 0) continue;
+      distance(x, y) = std::min(std::min(distance(x - 1, y), distance(x, y - 1)) + kStraight,
+                                std::min(distance(x - 1, y - 1), distance(x + 1, y - 1)) + kDiagonal);
+    }
   }
-  cv::Mat distance;
-  cv::distanceTransform(framed, distance, cv::DIST_L2, 3);
-  cv::Point best;
-  cv::minMaxLoc(distance, nullptr, nullptr, nullptr, &best);
-  return {best.x - 1, best.y - 1};
+  for (int y = height; y >= 1; --y) {
+    for (int x = width; x >= 1; --x) {
+      int& here = distance(x, y);
+      if (here == 0) continue;
+      here = std::min({here, distance(x + 1, y) + kStraight, distance(x, y + 1) + kStraight,
+                       distance(x + 1, y + 1) + kDiagonal, distance(x - 1, y + 1) + kDiagonal});
+      if (here >= most) {  // of several places the first in raster order
+        most = here;
+        best = {x - 1, y - 1};
+      }
+    }
+  }
+  return best;
 }
 
 std::vector<Rect> place_labels(const std::vector<Rect>& wanted, Size picture) {
@@ -344,15 +341,22 @@ DisparitySpan disparity_span(View<const float> disparity_px) {
 }
 
 std::array<Rgb, 256> disparity_colours() {
-  cv::Mat ramp(1, 256, CV_8UC1);
-  for (int i = 0; i < 256; ++i) ramp.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(i);
-  cv::Mat bgr;
-  cv::applyColorMap(ramp, bgr, cv::COLORMAP_TURBO);
+  // Turbo (Mikhailov 2019), by its polynomials: red, green and blue of 0 … 1, coefficients from low to high.
+  constexpr std::array<std::array<double, 6>, 3> kTurbo{
+      {{0.13572138, 4.61539260, -42.66032258, 132.13108234, -152.94239396, 59.28637943},
+       {0.09140261, 2.19418839, 4.84296658, -14.18503333, 4.27729857, 2.82956604},
+       {0.10667330, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973}}};
+  const auto level = [](const std::array<double, 6>& polynomial, double at) {
+    double value = 0;
+    for (std::size_t i = polynomial.size(); i-- > 0;) value = value * at + polynomial[i];
+    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
+  };
   std::array<Rgb, 256> colours{};
-  for (int i = 0; i < 256; ++i) {
-    const auto c = bgr.at<cv::Vec3b>(0, i);
+  for (std::size_t i = 0; i < colours.size(); ++i) {
+    const double at = static_cast<double>(i) / 255;
     // The darkest ends of the map would be hard to distinguish from holes.
-    colours[static_cast<std::size_t>(i)] = mixed(Rgb{c[2], c[1], c[0]}, {255, 255, 255}, 0.08F);
+    colours[i] =
+        mixed(Rgb{level(kTurbo[0], at), level(kTurbo[1], at), level(kTurbo[2], at)}, {255, 255, 255}, 0.08F);
   }
   return colours;
 }
@@ -372,10 +376,10 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
     const Rect box = object.box_px;
     const Image<std::uint8_t> mask = mask_of(View<const ObjectId>(objects.labels), object.id, box);
     const LabelPlace place = label_place(mask);
-    const cv::Point middle = cv::Point(box.x + place.x, box.y + place.y) * factor;
-    names.push_back(label_at(middle, std::to_string(number(object.id)) + ": " + distance));
+    names.push_back(label_at({(box.x + place.x) * factor, (box.y + place.y) * factor},
+                             std::to_string(number(object.id)) + ": " + distance));
   }
-  write_labels(matrix(canvas), names);
+  write_labels(canvas, names);
   const bool in_metres = std::any_of(objects.list.begin(), objects.list.end(), [](const Object& object) {
     return object.position_in_camera_m.has_value();
   });
@@ -397,7 +401,7 @@ Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig
                          : shown_reason(reject).colour;
     }
   }
-  draw_legend(matrix(canvas), width, map, span, colours, rig, in_force);
+  draw_legend(canvas, width, map, span, colours, rig, in_force);
   return canvas;
 }
 
