@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "app.hpp"
 
+#include <algorithm>
+#include <cairn/core/nearest.hpp>
 #include <string>
 #include <string_view>
 
@@ -14,7 +16,17 @@ std::string examples_text(const Command& command) {
   return text + "\n";
 }
 
-CommandLine declare_command_line() {
+std::string unknown_command(const std::string& name) {
+  std::vector<std::string> names;
+  names.reserve(kCommands.size());
+  for (const Command& command : kCommands) names.emplace_back(command.name);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return {};
+  const std::string close = nearest(name, names);
+  return "unknown command '" + name + "'" +
+         (close.empty() ? "; cairn --help lists them" : ", did you mean '" + close + "'?");
+}
+
+CommandLine declare_command_line(Declare declare) {
   CommandLine line;
   line.app = std::make_unique<CLI::App>(
       "cairn: objects from a rectified stereo pair, with a reason for every rejected pixel", "cairn");
@@ -27,7 +39,7 @@ CommandLine declare_command_line() {
   for (const Command& command : kCommands) {
     CLI::App* sub = line.app->add_subcommand(command.name, command.help);
     sub->footer("");  // without the parent's footer
-    line.commands.emplace_back(sub, command.declare(*sub));
+    line.commands.emplace_back(sub, declare(command.name, *sub));
     sub->footer(examples_text(command) + (sub->get_footer().empty() ? "" : "\n" + sub->get_footer()));
   }
   return line;

@@ -11,12 +11,21 @@
 
 namespace cairn::cli {
 
-/// The command line: all commands with their options and actions.
+/// The command line: all commands, those that `declare` knows with their options and actions.
 struct CommandLine {
   std::unique_ptr<CLI::App> app;
   std::vector<std::pair<CLI::App*, Work>> commands;
 };
-CommandLine declare_command_line();
+CommandLine declare_command_line(Declare declare);
+
+/// Parses and runs the command line. Errors become one line on stderr. Returns the exit code.
+int run(int argc, const char* const* argv, Declare declare);
+/// The same for memory that runs out where no exception can be caught.
+void end_in_one_line_without_memory();
+
+/// The entry of the module with the commands that main.cpp does not contain.
+inline constexpr const char* kCommandsEntry = "cairn_run_command";
+using CommandsEntry = int (*)(int argc, const char* const* argv);
 
 /// "Examples:" with one line each, followed by the command's own notes in --help.
 std::string examples_text(const Command& command);

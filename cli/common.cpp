@@ -8,6 +8,7 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/target.hpp>
+#include <cairn/input/frame_list.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/config_files.hpp>
 #include <cairn/io/disparity_files.hpp>
@@ -211,6 +212,22 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   std::vector<io::FrameFiles> frames{frame_of_files(options)};
   if (!options.disparity.empty()) check_maps(frames, options);
   return frames;
+}
+
+std::vector<std::optional<std::int64_t>> stamps_of(const InputOptions& options,
+                                                   const std::vector<io::FrameFiles>& frames) {
+  std::vector<std::optional<std::int64_t>> stamps(frames.size());
+  std::error_code unknown;
+  if (!fs::is_directory(options.left, unknown)) return stamps;
+  try {
+    const auto known = io::stamps_in(options.left, frames);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (const auto found = known.find(frames[i].left); found != known.end()) stamps[i] = found->second.ns;
+    }
+  } catch (const Error& error) {
+    std::cerr << "cairn: " << error.what() << "; the results have no stamps\n";
+  }
+  return stamps;
 }
 
 const fs::path& right_of(const io::FrameFiles& files) {

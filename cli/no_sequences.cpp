@@ -27,11 +27,6 @@ Work not_built_in(CLI::App& app) {
 
 }  // namespace
 
-std::vector<std::optional<std::int64_t>> stamps_of(const InputOptions&,
-                                                   const std::vector<io::FrameFiles>& frames) {
-  return std::vector<std::optional<std::int64_t>>(frames.size());
-}
-
 std::vector<OptionInfo> sequence_options(const ConfigOptions&) {
   refuse();
 }

@@ -23,22 +23,6 @@ void stop_camera() {
 
 }  // namespace
 
-std::vector<std::optional<std::int64_t>> stamps_of(const InputOptions& options,
-                                                   const std::vector<io::FrameFiles>& frames) {
-  std::vector<std::optional<std::int64_t>> stamps(frames.size());
-  std::error_code unknown;
-  if (!std::filesystem::is_directory(options.left, unknown)) return stamps;
-  try {
-    const auto known = io::stamps_in(options.left, frames);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (const auto found = known.find(frames[i].left); found != known.end()) stamps[i] = found->second.ns;
-    }
-  } catch (const Error& error) {
-    std::cerr << "cairn: " << error.what() << "; the results have no stamps\n";
-  }
-  return stamps;
-}
-
 EndsBySignal::EndsBySignal(io::Sequence& sequence) {
   if (!sequence.status().is_live) return;
   open_camera = &sequence;

@@ -27,8 +27,8 @@ set(private_headers
   regions/split_floor regions/surfaces_behind
   objects/object_match objects/ranks pipeline/match_and_check pipeline/methods pipeline/option_walk diagnosis/robust_fit
   sequence/assign sequence/changes sequence/kalman sequence/landmark_geometry sequence/motion_fit sequence/twist
-  io/calibration_forms io/frame_names io/raster io/read_file io/sha256 io/yaml_text
-  input/frame_list input/frame_watch input/load_module input/mcap_sequence input/mcap_topics io/names_and_numbers
+  io/calibration_forms io/frame_names io/load_module io/raster io/read_file io/sha256 io/yaml_text
+  input/frame_list input/frame_watch input/mcap_sequence input/mcap_topics io/names_and_numbers
   input/open_ros2 input/open_video input/ros_pictures sequence/stamp_pairing io/text_lines
   output/drawing output/json_line web/html_template web/live_page web/page_parts ros/mcap_format
   view/access view/channels view/client view/frame_json view/parameters
@@ -119,12 +119,12 @@ list(JOIN static_requires " " static_requires)
 cairn_install_pkgconfig(cairn "${PROJECT_DESCRIPTION}" "-lcairn" "" "${static_requires}" "-pthread")
 if(CAIRN_IO)
   # OpenCV's libraries directly: its own .pc file names every module.
-  set(opencv_libs "-lopencv_imgproc -lopencv_core")
-  if(CAIRN_HAS_CALIBRATION)
-    string(PREPEND opencv_libs "-lopencv_calib3d ")
+  set(io_libs "-ldl")
+  if(CAIRN_HAS_CALIBRATION AND NOT CAIRN_HAS_TRACKING)
+    string(PREPEND io_libs "-lopencv_calib3d -lopencv_imgproc -lopencv_core ")
   endif()
   cairn_install_pkgconfig(cairn-io "Files of cairn: images, calibrations, options and results" "-lcairn-io"
-    "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg zlib" "${opencv_libs}")
+    "cairn = ${PROJECT_VERSION}" "yaml-cpp libpng libjpeg zlib" "${io_libs}")
   if(CAIRN_HAS_TRACKING)
     set(mcap_requires)
     if(CAIRN_HAS_ZSTD)
@@ -132,7 +132,7 @@ if(CAIRN_IO)
     endif()
     cairn_install_pkgconfig(cairn-sequences "Sequences with cairn: odometry, tracks, landmarks, sources of frames"
       "-lcairn-sequences" "cairn-io = ${PROJECT_VERSION}" "sqlite3${mcap_requires}"
-      "-lSQLiteCpp -lopencv_video -lopencv_calib3d -ldl")
+      "-lSQLiteCpp -lopencv_video -lopencv_calib3d -lopencv_imgproc -lopencv_core -ldl")
   endif()
 endif()
 
@@ -140,6 +140,9 @@ endif()
 
 if(CAIRN_IO)
   install(TARGETS cairn_cli RUNTIME COMPONENT tools)
+  if(TARGET cairn_commands)
+    install(TARGETS cairn_commands LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cairn COMPONENT tools)
+  endif()
   if(TARGET cairn_video)
     install(TARGETS cairn_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cairn COMPONENT video)
   endif()

@@ -23,3 +23,16 @@ function(cairn_library target)
     set_target_properties(${target} PROPERTIES LINK_DEPENDS ${CAIRN_EXPORTS})
   endif()
 endfunction()
+
+# cairn_module(TARGET NAME LIBRARIES SOURCES...): a module loaded on first use by cairn/io/load_module.cpp.
+function(cairn_module target name libraries)
+  add_library(${target} MODULE ${ARGN})
+  target_link_libraries(${target} PRIVATE cairn_options ${libraries})
+  target_compile_definitions(${target} PRIVATE CAIRN_VERSION="${PROJECT_VERSION}")
+  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
+  set_target_properties(${target} PROPERTIES
+    PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+  if(CMAKE_INSTALL_RPATH)  # the module's folder is below that of the libraries
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH $ORIGIN/..)
+  endif()
+endfunction()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/input/camera/gst_camera.hpp>
-#include <cairn/input/load_module.hpp>
+#include <cairn/io/load_module.hpp>
 
 extern "C" {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <cairn/input/load_module.hpp>
+#include <cairn/io/load_module.hpp>
 #include <cairn/input/sequence.hpp>
 
 /// The interface between the libraries and the module for ROS 2 topics. All belong to one build.

@@ -4,7 +4,7 @@
 
 #include <string>
 
-/// Heavy parts of source are modules, loaded on first use. Internal to source.
+/// Parts with heavy dependencies are modules, loaded on first use.
 namespace cairn::io {
 
 /// A module: file names and words for messages.

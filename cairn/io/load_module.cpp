@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/input/load_module.hpp>
+#include <cairn/io/load_module.hpp>
 
 #include <dlfcn.h>
 
