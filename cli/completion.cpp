@@ -163,6 +163,6 @@ std::string bash_completion(const CLI::App& cairn) {
 
 /// Prints the completion for bash.
 int main() {
-  std::cout << cairn::cli::bash_completion(*cairn::cli::declare_command_line(declare_any).app);
+  std::cout << cairn::cli::bash_completion(*cairn::cli::declare_command_line(cairn::cli::declare_any).app);
   return std::cout.flush() ? 0 : 1;
 }

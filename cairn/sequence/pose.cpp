@@ -22,16 +22,6 @@ std::array<double, 9> rows_of(const Matrix3& matrix) {
 
 }  // namespace
 
-std::string seconds_text(Stamp stamp) {
-  constexpr std::uint64_t kPerSecond = 1'000'000'000;
-  // A double has no room for both; and the least of stamps has no opposite.
-  const auto bits = static_cast<std::uint64_t>(stamp.ns);
-  const std::uint64_t ns = stamp.ns < 0 ? 0 - bits : bits;
-  const std::string fraction = std::to_string(ns % kPerSecond);
-  return (stamp.ns < 0 ? "-" : "") + std::to_string(ns / kPerSecond) + "." +
-         std::string(9 - fraction.size(), '0') + fraction;
-}
-
 double length(Point3 a) {
   return std::sqrt(dot(a, a));
 }
