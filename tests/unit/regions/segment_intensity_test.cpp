@@ -41,10 +41,10 @@ TEST(SegmentIntensity, AGradientBelowItsThresholdMakesNoBasins) {
   // Without growing, regions are basins: two, and possibly one for a corner.
   const Image<Gray> image = picture({60, 40}, {12, 8, 20, 15}, 2);
   const auto basins = [&](float threshold) {
-    const IntensityConfig config{.smoothing_sigma = 0,
-                                 .gradient_threshold = threshold,
+    const IntensityConfig config{.gradient_threshold = threshold,
                                  .mean_difference_max = 0,
                                  .deviation_max = 0,
+                                 .smoothing_sigma = 0,
                                  .min_region_area = 0};
     return segment_intensity(image, config, {}).regions.size();
   };
