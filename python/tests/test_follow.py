@@ -168,10 +168,10 @@ def test_a_map_keeps_landmarks_from_run_to_run(tmp_path):
 
 def test_a_better_option_is_reported_or_set(pairs, rig):
     left, right = pairs[0]
-    control = {"window": 3, "budget": 1, "lead": 100}
+    control = {"budget": 1}
     for method in ("watch", "tune"):
         follower = cairn.Follower(rig, objects={"min_area": 60}, control={"method": method, **control})
-        steps = [follower.next(left, right, seconds=0.1 * i) for i in range(20)]
+        steps = [follower.next(left, right, seconds=0.1 * i) for i in range(40)]
         step = next(step for step in steps if step.control)
         found = step.control
         assert (found["option"], found["before"], found["value"]) == ("objects.min_area", "60", "0.25")

@@ -248,7 +248,7 @@ TEST_F(Follow, WatchingReportsABetterOptionAndChangesNothing) {
 }
 
 TEST_F(Follow, TuningSetsABetterOption) {
-  standing(20);
+  standing(40);
   const Outcome outcome = run({"follow", path("in"), "--set", "objects.min_area=60", "--set",
                                "control.method=tune", "--set", "control.budget=1", "-o", path("tuned")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -169,7 +169,7 @@ TEST(RegionsProperties, AddingAWholeDisparityChangesNoDisparityRegion) {
 
 TEST(RegionsProperties, RelabellingTheInputsDoesNotChangeFusion) {
   const World w = world(9);
-  const Segmentation by_intensity = segment_intensity(w.left, {}, {});
+  const Segmentation by_intensity = segment_intensity(w.left, {.smoothing_sigma = 0.7F}, {});
   const Segmentation by_disparity = segment_disparity(w.disparity, {}, {}, {});
   Segmentation renamed{by_intensity.labels.clone(), by_intensity.regions};
   const auto last = static_cast<std::int32_t>(renamed.regions.size()) - 1;

@@ -153,7 +153,7 @@ TEST(ObjectsJson, HasObjectsAndProvenance) {
   EXPECT_EQ(j.at("rig").at("baseline_m"), 0.12);  // the shortest text of the float, not 0.119999997
   EXPECT_EQ(j.at("config").at("match").at("window_size"), 11);
   EXPECT_EQ(j.at("config").at("match").at("cost"), "zncc");
-  EXPECT_TRUE(j.at("config").at("subpixel").at("enabled").is_boolean());
+  EXPECT_TRUE(j.at("config").at("ground").at("label_floor").is_boolean());
   EXPECT_FALSE(j.at("config").contains("semi_global")) << "what is not read says nothing about the result";
   EXPECT_EQ(j.at("timings_ms").at("match"), 3.25);
   EXPECT_EQ(j.at("ground").at("plane").at("b"), 0.1);
