@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/io/load_module.hpp>
 #include <cairn/input/open_video.hpp>
 #include <cairn/input/video/module.hpp>
+#include <cairn/io/load_module.hpp>
 
 /// FFmpeg and the dependencies of OpenCV's video module are 200 libraries, which take a quarter of a second
 /// to load. So they are loaded with the first video only.

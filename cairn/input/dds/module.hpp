@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include <cairn/io/load_module.hpp>
 #include <cairn/input/sequence.hpp>
+#include <cairn/io/load_module.hpp>
 
 /// The interface between the libraries and the module for ROS 2 topics. All belong to one build.
 namespace cairn::dds {

@@ -150,10 +150,12 @@ TEST(ActiveOptions, InactiveOnesAreRefusedWithTheOptionToSetFirst) {
   }
   EXPECT_EQ(message_of([] { require_active(Config{}, "match.cost"); }),
             "match.cost has no effect with match.method=semi_global; set match.method=window first");
-  EXPECT_EQ(message_of([] { require_active(Config::paper(), "superpixels.count"); }),
-            "superpixels.count has no effect with pipeline.method=paper; set pipeline.method=region_tree first");
-  EXPECT_EQ(message_of([] { require_active(Config{}, "objects.max_area"); }),
-            "objects.max_area has no effect with pipeline.method=region_tree; set pipeline.method=paper first");
+  EXPECT_EQ(
+      message_of([] { require_active(Config::paper(), "superpixels.count"); }),
+      "superpixels.count has no effect with pipeline.method=paper; set pipeline.method=region_tree first");
+  EXPECT_EQ(
+      message_of([] { require_active(Config{}, "objects.max_area"); }),
+      "objects.max_area has no effect with pipeline.method=region_tree; set pipeline.method=paper first");
 }
 
 TEST(ActiveOptions, OfASingleStageAreThoseOfItsOwnSections) {
