@@ -284,6 +284,7 @@ Image<Rgb> enlarged(const Image<Rgb>& image, int factor) {
   };
   Image<Rgb> large({image.width() * factor, image.height() * factor});
   std::vector<Taps> across;
+  across.reserve(static_cast<std::size_t>(large.width()));
   for (int x = 0; x < large.width(); ++x) across.push_back(taps_at(x));
   std::vector<std::array<float, 3>> column(
       static_cast<std::size_t>(image.width()));  // interpolated downwards

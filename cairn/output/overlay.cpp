@@ -85,8 +85,9 @@ void write_labels(Image<Rgb>& canvas, const std::vector<Label>& labels) {
     const drawing::Point at = labels[i].middle;
     const bool is_inside =
         at.x >= place.x && at.x < place.x + place.width && at.y >= place.y && at.y < place.y + place.height;
-    if (!is_inside)
+    if (!is_inside) {
       drawing::draw_line(canvas, {place.x + place.width / 2, place.y + place.height / 2}, at, white);
+    }
   }
   for (std::size_t i = 0; i < labels.size(); ++i)
     drawing::draw_text(canvas, labels[i].text, {places[i].x, places[i].y + labels[i].extent.above},
