@@ -4,10 +4,9 @@
 #include <cairn/input/mcap_sequence.hpp>
 #include <cairn/io/config_files.hpp>
 #include <cairn/live/sequence_run.hpp>
-#include <cairn/output/follow_files.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/sequence/follow_config.hpp>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
 #include "batch_frames.hpp"
 #include "follow_options.hpp"
@@ -182,10 +181,10 @@ struct TrackRows::State {
         return batch::error_row(name, of.source + ": frame " + std::to_string(index) + " cannot be read");
       const io::SequenceFrame frame = *std::exchange(read_ahead, std::nullopt);
       const Step step = run->next(frame);
-      auto line = batch::Json::parse(io::step_json(step, name, run->marked(), frame.frame_id));
+      io::Json line = io::json_of(step, name, run->marked().tracks, frame.frame_id);
       line["frame"] = name;
       line.erase("name");
-      return line.dump();
+      return io::json_text(line);
     } catch (const Error& error) {
       ended = error.what();
       return batch::error_row(name, ended);

@@ -8,6 +8,7 @@
 #include <cairn/io/dataset.hpp>
 #include <cairn/io/disparity_files.hpp>
 #include <cairn/io/image_files.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/timing/drawn_pair.hpp>
 #include <cairn/timing/frame_times.hpp>
 #include <cairn/timing/machine.hpp>
@@ -18,7 +19,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -27,7 +27,7 @@ namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using io::Json;
 using report::FrameTimes;
 using report::Samples;
 
@@ -304,10 +304,9 @@ std::string accuracy_table(const Findings& found) {
 
 // ---- JSON ----
 
-/// null for NaN and infinity, which JSON does not have; otherwise rounded to ns, the clock's resolution.
+/// ms rounded to ns, the clock's resolution.
 Json json(double value) {
-  constexpr double kSteps = 1e6;
-  return std::isfinite(value) ? Json(std::round(value * kSteps) / kSteps) : Json(nullptr);
+  return io::rounded(value);
 }
 
 Json json(const std::vector<double>& milliseconds) {
@@ -376,7 +375,7 @@ std::string bench_json(const Findings& found) {
                {"colour", !subject.left.rgb.empty()},
                {"calibrated", subject.rig.has_value()}};
   j["preset"] = subject.preset;
-  j["config"] = Json::parse(io::config_json(subject.config));
+  j["config"] = io::json_of(subject.config);
   j["machine"] = {{"processor", report::processor()},
                   {"compiler", report::compiler()},
                   {"threads", found.exec.threads()},
@@ -396,7 +395,7 @@ std::string bench_json(const Findings& found) {
   j["opencv"] = opencv_json(found);
   j["accuracy"] = accuracy_json(found);
   // A file name that is not UTF-8 is not an error.
-  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return io::json_text(j, 1) + "\n";
 }
 
 int bench(const BenchOptions& options, bool drawn) {

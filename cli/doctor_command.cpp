@@ -7,9 +7,9 @@
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/output/diagnosis_json.hpp>
+#include <cairn/output/json.hpp>
 #include <cmath>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -18,7 +18,7 @@
 namespace cairn::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using io::Json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestSequence = 60;  // pairs held in memory at a time
@@ -458,7 +458,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   Json j{{"cairn", CAIRN_VERSION}, {"broken", is_broken}, {"pairs_in_all", diagnosis.pairs_in_all}};
   j["findings"] = Json::array();
   for (const Finding& finding : diagnosis.findings)
-    j["findings"].push_back(Json::parse(io::finding_json(finding, names_of(diagnosis.pairs))));
+    j["findings"].push_back(io::json_of(finding, names_of(diagnosis.pairs)));
   j["not_checked"] = Json::array();
   for (const Omission& one : omissions(diagnosis)) {
     Json pairs = Json::array();
@@ -472,15 +472,13 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   j["pairs"] = Json::array();
   for (const ExaminedPair& pair : diagnosis.pairs) {
     Json one{{"name", pair.name}, {"width", pair.size->width}, {"height", pair.size->height}};
-    one["measured"] = pair.measures ? Json::parse(io::measures_json(*pair.measures)) : Json(nullptr);
+    one["measured"] = pair.measures ? io::json_of(*pair.measures) : Json(nullptr);
     j["pairs"].push_back(std::move(one));
   }
   j["synchrony"] = nullptr;
-  if (diagnosis.sequence && !diagnosis.sequence->names.empty()) {
-    j["synchrony"] =
-        Json::parse(io::synchrony_json(diagnosis.sequence->synchrony, diagnosis.sequence->names));
-  }
-  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (diagnosis.sequence && !diagnosis.sequence->names.empty())
+    j["synchrony"] = io::json_of(diagnosis.sequence->synchrony, diagnosis.sequence->names);
+  return io::json_text(j, 1) + "\n";
 }
 
 int examine_and_tell(const DoctorOptions& options) {

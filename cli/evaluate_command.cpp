@@ -10,12 +10,12 @@
 #include <cairn/io/frame_names.hpp>
 #include <cairn/io/image_files.hpp>
 #include <cairn/io/read_file.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/output/results.hpp>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 
@@ -29,8 +29,8 @@ namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using cli::json;  // next to the overloads below
+using io::Json;
 
 struct EvaluateOptions {
   std::vector<std::string> folders;  // as given: results, then truth
@@ -432,11 +432,6 @@ Json json_if(bool known, int value) {
   return known ? Json(value) : Json(nullptr);
 }
 
-/// The double nearest to the float's shortest decimal form: 0.7, not 0.699999988.
-double shortest(float value) {
-  return std::stod(text_of("%.7g", static_cast<double>(value)));
-}
-
 Json json(const TrueObjectScore& score) {
   return {{"id", number(score.id)},
           {"area_px", score.pixel_count},
@@ -591,11 +586,11 @@ Json summary_times_json(const std::vector<FrameScore>& frames) {
 }
 
 /// The content of the --json file (docs/evaluation.md).
-std::string evaluation_json(const Scores& scores, const EvaluateOptions& options) {
+Json evaluation_json(const Scores& scores, const EvaluateOptions& options) {
   Json j;
   j["cairn"] = CAIRN_VERSION;
   j["options"] = {{"min_area_px", options.objects.min_area},
-                  {"boundary_tolerance_percent", shortest(options.objects.boundary_tolerance)},
+                  {"boundary_tolerance_percent", io::shortest(options.objects.boundary_tolerance)},
                   {"skip_left_px", options.skip_left}};
   j["summary"] = {{"objects", summary_objects_json(scores.frames)},
                   {"disparity", summary_disparity_json(scores.frames)},
@@ -605,18 +600,17 @@ std::string evaluation_json(const Scores& scores, const EvaluateOptions& options
   j["left_out"] = scores.left_out.frames();
   j["frames"] = Json::array();
   for (const FrameScore& frame : scores.frames) j["frames"].push_back(frame_json(frame));
-  // A folder name that is not UTF-8 is not an error.
-  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return j;
 }
 
 constexpr const char* kPageName = "evaluation.html";
 
-void write_page(Scores& scores, const EvaluateOptions& options, const std::string& as_json) {
+void write_page(Scores& scores, const EvaluateOptions& options, std::string as_json) {
   std::vector<io::EncodedFrame> frames;
   frames.reserve(scores.frames.size());
   for (FrameScore& frame : scores.frames) frames.push_back(std::move(frame.page));
   const io::PageHead head{"evaluate", name_of(options.results.front()) + " against " + name_of(options.truth),
-                          as_json};
+                          std::move(as_json)};
   const std::string page = io::html_page(head, frames);
   io::make_folder(*options.html);
   io::write_file(fs::path(*options.html) / kPageName, page);
@@ -745,9 +739,9 @@ int evaluate(EvaluateOptions& options) {
   std::cerr << scores.remark;
   if (options.csv) io::write_file(*options.csv, csv_of(runs));
   if (options.json || options.html) {
-    const std::string as_json = evaluation_json(scores, options);
-    if (options.json) io::write_file(*options.json, as_json);
-    if (options.html) write_page(scores, options, as_json);
+    const Json as_json = evaluation_json(scores, options);
+    if (options.json) io::write_file(*options.json, io::json_text(as_json, 1) + "\n");
+    if (options.html) write_page(scores, options, io::json_text(as_json));
   }
   std::cout << frame_table(scores.frames) << "\n"
             << object_lines(scores.frames, options) << disparity_lines(scores.frames, options.skip_left);

@@ -7,13 +7,13 @@
 #include <cairn/live/sequence_run.hpp>
 #include <cairn/output/follow_files.hpp>
 #include <cairn/output/follow_page.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/sequence/follower.hpp>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -28,7 +28,7 @@ namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using io::Json;
 using Clock = std::chrono::steady_clock;
 
 struct FollowOptions {
@@ -224,58 +224,16 @@ void check_output(const FollowOptions& options) {
   }
 }
 
-Json event_json(const LandmarkEvent& event, const Landmarked& marked, int frame) {
-  Json j{
-      {"frame", frame}, {"stamp_ns", event.stamp.ns}, {"kind", choice_name(event.kind, kLandmarkEventKinds)}};
-  if (event.landmark != LandmarkId::none) j["landmark"] = number(event.landmark);
-  for (const LandmarkOfTrack& of : marked.tracks) {
-    if (of.landmark == event.landmark && of.track != TrackId::none && event.landmark != LandmarkId::none)
-      j["track"] = number(of.track);
-  }
-  const auto point = [](Point3 p) { return Json::array({p.x, p.y, p.z}); };
-  j["to_m"] = point(event.position_m);
-  if (event.kind == LandmarkEventKind::moved || event.kind == LandmarkEventKind::relocated)
-    j["from_m"] = point(event.position_m - event.moved_by_m);
-  j["probability"] = event.probability;
-  j["frames"] = event.frames;
-  return j;
-}
-
-Json control_json(const ControlEvent& event, const Step& step) {
-  return {{"frame", step.index},
-          {"stamp_ns", step.stamp.ns},
-          {"kind", event.is_set ? "option_set" : "option_better"},
-          {"option", event.arm.option},
-          {"from", event.before},
-          {"to", event.arm.value},
-          {"lead", event.lead}};
-}
-
-Json unreliable_json(const Step& step) {
-  return {{"frame", step.index},
-          {"stamp_ns", step.stamp.ns},
-          {"kind", "unreliable"},
-          {"weakest", step.reliability.weakest},
-          {"reliability", step.reliability.value.value_or(0)}};
-}
-
 std::string unreliable_line(const Step& step, const std::string& name) {
   return name + ": unreliable since " + std::to_string(step.reliability.weak_frames) + " frames (" +
          text_of("%.2f", double{step.reliability.value.value_or(0)}) +
          "), weakest: " + step.reliability.weakest;
 }
 
-std::string event_line(const Json& event) {
-  const std::string kind = event["kind"];
-  std::string line = "  " + kind;
-  if (event.contains("landmark")) line += ": landmark " + event["landmark"].dump();
-  if (kind == "moved") {
-    const auto& from = event["from_m"];
-    const auto& to = event["to_m"];
-    double square = 0;
-    for (std::size_t i = 0; i < 3; ++i) square += std::pow(double{to[i]} - double{from[i]}, 2);
-    line += ", by " + text_of("%.2f m", std::sqrt(square));
-  }
+std::string event_line(const LandmarkEvent& event) {
+  std::string line = "  " + choice_name(event.kind, kLandmarkEventKinds);
+  if (event.landmark != LandmarkId::none) line += ": landmark " + std::to_string(number(event.landmark));
+  if (event.kind == LandmarkEventKind::moved) line += ", by " + text_of("%.2f m", length(event.moved_by_m));
   return line;
 }
 
@@ -284,18 +242,24 @@ struct Outputs {
   std::optional<io::FollowFiles> files;
   std::optional<io::FollowPage> page;
 
-  void add_event(const Json& event) {
-    if (files) files->add_event(event.dump() + "\n");
-    if (page) page->add_event(event.dump());
+  void add_event(const std::string& event) {
+    if (files) files->add_event(event + "\n");
+    if (page) page->add_event(event);
   }
 };
 
-void tell(const Step& step, const Landmarked& marked, const io::SequenceFrame& frame,
-          const FollowOptions& options, Outputs& outputs, Run& run) {
-  if (outputs.files) outputs.files->add(step, frame.name, marked, frame.frame_id);
+void report(const Step& step, const Landmarked& marked, const io::SequenceFrame& frame,
+            const FollowOptions& options, Outputs& outputs, Run& run) {
+  io::Json json;
+  std::string line;
+  if (outputs.files || options.json_lines) {
+    json = io::json_of(step, frame.name, marked.tracks, frame.frame_id);
+    line = io::json_text(json) + "\n";
+  }
+  if (outputs.files) outputs.files->add(step, line);
   if (outputs.page) {
-    outputs.page->add(
-        io::encode_step(step, frame.name, frame.left.gray, frame.left.rgb, run.milliseconds.back(), marked));
+    outputs.page->add(io::encode_step(std::move(json), step, frame.left.gray, frame.left.rgb,
+                                      run.milliseconds.back(), marked.state.map_from_odom()));
   }
   if (options.frames_out) {
     const fs::path folder = fs::path(options.output) / frame.name;
@@ -304,22 +268,18 @@ void tell(const Step& step, const Landmarked& marked, const io::SequenceFrame& f
     io::save_png(folder / "tracks.png", drawn);
   }
   if (options.json_lines) {
-    std::cout << io::step_json(step, frame.name, marked, frame.frame_id) << std::flush;
+    std::cout << line << std::flush;
   } else {
     std::cout << line_of(step, frame.name) << "\n";
   }
-  if (step.control) {
-    outputs.add_event(control_json(*step.control, step));
-    std::cerr << frame.name << ": " << control_line(*step.control) << "\n";
+  if (outputs.files) {
+    for (const io::Json& event : io::event_lines(step, marked.tracks, marked.events))
+      outputs.add_event(io::json_text(event));
   }
-  if (step.reliability.is_unreliable && step.reliability.weak_frames == kUnreliableFrames) {
-    outputs.add_event(unreliable_json(step));
-    std::cerr << unreliable_line(step, frame.name) << "\n";
-  }
+  if (step.control) std::cerr << frame.name << ": " << control_line(*step.control) << "\n";
+  if (io::becomes_unreliable(step)) std::cerr << unreliable_line(step, frame.name) << "\n";
   for (const LandmarkEvent& event : marked.events) {
-    const Json j = event_json(event, marked, step.index);
-    outputs.add_event(j);
-    if (!options.json_lines) std::cout << event_line(j) << "\n";
+    if (!options.json_lines) std::cout << event_line(event) << "\n";
     run.events.push_back(event);
   }
 }
@@ -341,7 +301,7 @@ void go_through(io::Sequence& source, io::SequenceRun& follower, const FollowOpt
     const Step step = follower.next(*frame);
     run.add(step, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     progress.clear();
-    tell(step, follower.marked(), *frame, options, outputs, run);
+    report(step, follower.marked(), *frame, options, outputs, run);
   }
 }
 
@@ -352,7 +312,7 @@ void close(const std::string& state, const io::Sequence& source, io::SequenceRun
   follower.close(state == "done" || state == "ended early" ? RunState::done : RunState::aborted);
   if (outputs.files) {
     io::write_file(fs::path(options.output) / "summary.json",
-                   summary_json(run, options, source, run.config, state).dump(1) + "\n");
+                   io::json_text(summary_json(run, options, source, run.config, state), 1) + "\n");
   }
 }
 
@@ -403,8 +363,7 @@ int follow(const FollowOptions& options) {
             << ", " << text_of("%.2f m", run.path_m) << " of path, "
             << text_of("%.1f ms", run.percentile(0.5)) << " a frame (p99 "
             << text_of("%.1f", run.percentile(0.99)) << ")\n";
-  for (const LandmarkEvent& change : changes_of(run.events))
-    std::cerr << event_line(event_json(change, {}, 0)) << "\n";
+  for (const LandmarkEvent& change : changes_of(run.events)) std::cerr << event_line(change) << "\n";
   if (!options.map.empty()) std::cerr << no_landmark_text(follower.marked());
   return is_interrupted() ? kInterrupted : exit_code_of(*source);
 }

@@ -6,6 +6,7 @@
 #include <cairn/diagnosis/diagnose.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/calibration_files.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/output/web/html_page.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cmath>
@@ -149,8 +150,7 @@ io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, cons
   shown.groups = frame.groups.labels;
   shown.objects = frame.objects.labels;
   shown.space = frame.space;
-  shown.objects_json = io::objects_json(frame, provenance);
-  return io::encode_frame(shown);
+  return io::encode_frame(shown, io::json_of(frame, provenance));
 }
 
 /// Optional outputs in metres, by flag.

@@ -6,13 +6,13 @@
 #include <cairn/core/error.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/config_files.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/output/tuning_json.hpp>
 #include <cairn/tuning/tune.hpp>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 
@@ -26,7 +26,7 @@ namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using io::Json;
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
@@ -257,9 +257,9 @@ std::string config_file(const Task& task, const Tuning& tuned) {
 std::string tuning_json(const Task& task, const Tuning& tuned, const TuneOptions& options) {
   std::vector<std::string> names;
   for (const TuningFrame& frame : task.frames) names.push_back(frame.name);
-  Json j = Json::parse(io::tuning_json(tuned, names, options.seed));
+  Json j = io::json_of(tuned, names, options.seed);
   j["config"] = options.output;
-  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return io::json_text(j, 1) + "\n";
 }
 
 int tune_over_time(const TuneOptions& options, Seconds budget) {

@@ -30,7 +30,7 @@ set(private_headers
   io/calibration_forms io/frame_names io/load_module io/raster io/read_file io/sha256 io/yaml_text
   input/frame_list input/frame_watch input/mcap_sequence input/mcap_topics io/names_and_numbers
   input/open_ros2 input/open_video input/ros_pictures sequence/stamp_pairing io/text_lines
-  output/drawing output/json_line web/html_template web/live_page web/page_parts ros/mcap_format
+  live/topics output/drawing output/json output/json_line web/html_template web/live_page web/page_parts ros/mcap_format
   view/access view/channels view/client view/frame_json view/parameters
   [a-z]+/[a-z_]+_kernels)
 list(JOIN private_headers "|" private_headers)

@@ -3,13 +3,11 @@
 #include <cairn/output/diagnosis_json.hpp>
 
 #include <array>
+#include <cairn/output/json.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace cairn::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 57.29577951308232;
 
@@ -63,42 +61,34 @@ constexpr std::array kNumbers{
     PairNumber{"right_edge_px", "edges right, px", "%.2f",
                [](const PairMeasures& m) { return width_of(m.right_sharpness); }}};
 
-Json number_json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 }  // namespace
 
 std::vector<PairNumber> pair_numbers() {
   return {kNumbers.begin(), kNumbers.end()};
 }
 
-std::string measures_json(const PairMeasures& measures) {
+Json json_of(const PairMeasures& measures) {
   Json j;
-  for (const PairNumber& number : kNumbers) j[number.key] = number_json(number.of(measures));
+  for (const PairNumber& number : kNumbers) j[number.key] = finite(number.of(measures));
   j["rows_histogram"] = measures.rows.histogram;
-  return text_of(j);
+  return j;
 }
 
-std::string finding_json(const Finding& finding, const std::vector<std::string>& names) {
+Json json_of(const Finding& finding, const std::vector<std::string>& names) {
   const FindingInfo& known = info(finding.kind);
   Json pairs = Json::array();
   for (const std::size_t i : finding.frames) pairs.push_back(i < names.size() ? Json(names[i]) : Json(i));
-  return text_of({{"finding", known.name},
-                  {"severity", choice_name(finding.severity, kSeverities)},
-                  {"value", number_json(finding.value)},
-                  {"number", known.number},
-                  {"unit", known.unit},
-                  {"says", finding.says},
-                  {"remedy", known.remedy},
-                  {"pairs", pairs}});
+  return {{"finding", known.name},
+          {"severity", choice_name(finding.severity, kSeverities)},
+          {"value", finite(finding.value)},
+          {"number", known.number},
+          {"unit", known.unit},
+          {"says", finding.says},
+          {"remedy", known.remedy},
+          {"pairs", pairs}};
 }
 
-std::string synchrony_json(const Synchrony& s, const std::vector<std::string>& names) {
+Json json_of(const Synchrony& s, const std::vector<std::string>& names) {
   const auto name = [&](std::size_t i) { return i < names.size() ? Json(names[i]) : Json(i); };
   Json change = nullptr;
   if (s.change) {
@@ -107,14 +97,24 @@ std::string synchrony_json(const Synchrony& s, const std::vector<std::string>& n
               {"after", s.change->after},
               {"motion", s.change->motion}};
   }
-  return text_of({{"first", name(0)},
-                  {"frames", s.frames},
-                  {"lag", s.lag()},
-                  {"motion", s.motion},
-                  {"agreement", s.agreement},
-                  {"change", change},
-                  {"left_repeats", s.left_repeats},
-                  {"right_repeats", s.right_repeats}});
+  return {{"first", name(0)},
+          {"frames", s.frames},
+          {"lag", s.lag()},
+          {"motion", s.motion},
+          {"agreement", s.agreement},
+          {"change", change},
+          {"left_repeats", s.left_repeats},
+          {"right_repeats", s.right_repeats}};
+}
+
+std::string measures_json(const PairMeasures& measures) {
+  return json_text(json_of(measures));
+}
+std::string finding_json(const Finding& finding, const std::vector<std::string>& names) {
+  return json_text(json_of(finding, names));
+}
+std::string synchrony_json(const Synchrony& synchrony, const std::vector<std::string>& names) {
+  return json_text(json_of(synchrony, names));
 }
 
 }  // namespace cairn::io

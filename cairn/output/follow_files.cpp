@@ -7,37 +7,17 @@
 #include <cairn/core/error.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/rle.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/output/overlay.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 namespace cairn::io {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-/// Rounded to the µm (or 1e-6 of another unit): further digits carry no information.
-Json rounded(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  constexpr double kSteps = 1e6;
-  return std::round(value * kSteps) / kSteps;
-}
-
-/// Rounded to four significant digits.
-Json significant(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return std::strtod(text.data(), nullptr);
-}
-
-Json json(Point3 p) {
-  return Json::array({rounded(p.x), rounded(p.y), rounded(p.z)});
-}
 
 template <class Rows>
 Json matrix(const Rows& rows) {
@@ -82,7 +62,7 @@ Json pose_json(const Step& step) {
   if (!has_place(step)) return nullptr;
   Json turn = Json::array();
   for (const double entry : quaternion(step.map_from_camera)) turn.push_back(rounded(entry));
-  return {{"position_m", json(step.map_from_camera.translation_m)},
+  return {{"position_m", rounded(step.map_from_camera.translation_m)},
           {"quaternion_xyzw", turn},
           {"covariance", matrix(step.pose_covariance)}};
 }
@@ -108,7 +88,8 @@ Json reliability_json(const Reliability& reliability) {
   return j;
 }
 
-Json track_json(const Track& track, const Step& step, const TrackLabels& shown, const Landmarked& marked) {
+Json track_json(const Track& track, const Step& step, const TrackLabels& shown,
+                const std::vector<LandmarkOfTrack>& landmarks) {
   Json j{{"id", number(track.id)},
          {"state", choice_name(track.state, kTrackStates)},
          {"moving", track.is_moving},
@@ -121,13 +102,13 @@ Json track_json(const Track& track, const Step& step, const TrackLabels& shown, 
          {"hits", track.hits},
          {"misses", track.misses}};
   if (track.has_place) {
-    j["position_m"] = json(track.position_m);
+    j["position_m"] = rounded(track.position_m);
     j["covariance_m2"] = matrix(covariance_in_map(track, step.map_from_camera, step.pose_covariance));
-    j["velocity_m_s"] = json(track.velocity_m_s);
+    j["velocity_m_s"] = rounded(track.velocity_m_s);
     j["extent_m"] = {rounded(track.extent_m.x), rounded(track.extent_m.y), rounded(track.extent_m.z)};
   }
-  const auto of = std::ranges::find(marked.tracks, track.id, &LandmarkOfTrack::track);
-  if (of != marked.tracks.end()) {
+  const auto of = std::ranges::find(landmarks, track.id, &LandmarkOfTrack::track);
+  if (of != landmarks.end()) {
     if (of->landmark != LandmarkId::none) {
       j["landmark"] = number(of->landmark);
       j["recognised"] = of->is_recognised;
@@ -151,13 +132,61 @@ Json control_json(const ControlEvent& event) {
           {"set", event.is_set}};
 }
 
+/// What the lines of events.jsonl begin with.
+Json event_of(const Step& step, const std::string& kind) {
+  return {{"frame", step.index}, {"stamp_ns", step.stamp.ns}, {"kind", kind}};
+}
+
+Json landmark_event_of(const Step& step, const LandmarkEvent& event,
+                       const std::vector<LandmarkOfTrack>& landmarks) {
+  Json j = event_of(step, choice_name(event.kind, kLandmarkEventKinds));
+  j["stamp_ns"] = event.stamp.ns;
+  if (event.landmark != LandmarkId::none) {
+    j["landmark"] = number(event.landmark);
+    for (const LandmarkOfTrack& of : landmarks) {
+      if (of.landmark == event.landmark && of.track != TrackId::none) j["track"] = number(of.track);
+    }
+  }
+  const auto point = [](Point3 p) { return Json::array({p.x, p.y, p.z}); };
+  j["to_m"] = point(event.position_m);
+  if (event.kind == LandmarkEventKind::moved || event.kind == LandmarkEventKind::relocated)
+    j["from_m"] = point(event.position_m - event.moved_by_m);
+  j["probability"] = event.probability;
+  j["frames"] = event.frames;
+  return j;
+}
+
 }  // namespace
 
-std::string step_json(const Step& step, const std::string& name, const Landmarked& marked,
-                      const std::string& frame_id) {
+std::vector<Json> event_lines(const Step& step, const std::vector<LandmarkOfTrack>& landmarks,
+                              const std::vector<LandmarkEvent>& events) {
+  std::vector<Json> lines;
+  if (step.control) {
+    const ControlEvent& event = *step.control;
+    Json& j = lines.emplace_back(event_of(step, event.is_set ? "option_set" : "option_better"));
+    j["option"] = event.arm.option;
+    j["from"] = event.before;
+    j["to"] = event.arm.value;
+    j["lead"] = event.lead;
+  }
+  if (becomes_unreliable(step)) {
+    Json& j = lines.emplace_back(event_of(step, "unreliable"));
+    j["weakest"] = step.reliability.weakest;
+    j["reliability"] = step.reliability.value.value_or(0);
+  }
+  for (const LandmarkEvent& event : events) lines.push_back(landmark_event_of(step, event, landmarks));
+  return lines;
+}
+
+bool becomes_unreliable(const Step& step) {
+  return step.reliability.is_unreliable && step.reliability.weak_frames == kUnreliableFrames;
+}
+
+Json json_of(const Step& step, const std::string& name, const std::vector<LandmarkOfTrack>& landmarks,
+             const std::string& frame_id) {
   const TrackLabels shown = track_labels_of(step);
   Json tracks = Json::array();
-  for (const Track& track : step.tracks.list) tracks.push_back(track_json(track, step, shown, marked));
+  for (const Track& track : step.tracks.list) tracks.push_back(track_json(track, step, shown, landmarks));
   Json line{{"frame", step.index}, {"name", name}, {"stamp_ns", step.stamp.ns}};
   if (!frame_id.empty()) line["frame_id"] = frame_id;
   line.update({{"pose", pose_json(step)},
@@ -166,7 +195,12 @@ std::string step_json(const Step& step, const std::string& name, const Landmarke
                {"objects", step.frame.objects.list.size()},
                {"tracks", tracks}});
   if (step.control) line["control"] = control_json(*step.control);
-  return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return line;
+}
+
+std::string step_json(const Step& step, const std::string& name, const Landmarked& marked,
+                      const std::string& frame_id) {
+  return json_text(json_of(step, name, marked.tracks, frame_id)) + "\n";
 }
 
 std::string pose_tum(const Step& step) {
@@ -234,9 +268,8 @@ void FollowFiles::append(std::ofstream& file, const char* name, const std::strin
     throw Error((folder_ / name).string() + ": cannot be written: " + std::generic_category().message(errno));
 }
 
-void FollowFiles::add(const Step& step, const std::string& name, const Landmarked& marked,
-                      const std::string& frame_id) {
-  append(tracks_, "tracks.jsonl", step_json(step, name, marked, frame_id));
+void FollowFiles::add(const Step& step, const std::string& line) {
+  append(tracks_, "tracks.jsonl", line);
   append(poses_, "poses.tum", pose_tum(step));
   append(masks_, "tracks.mots.txt", masks_mots(step));
 }

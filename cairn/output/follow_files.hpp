@@ -17,6 +17,9 @@ namespace cairn::io {
 std::string step_json(const Step& step, const std::string& name, const Landmarked& marked = {},
                       const std::string& frame_id = {});
 
+/// Whether the frame is the one at which a run of weak frames is reported, in events.jsonl.
+bool becomes_unreliable(const Step& step);
+
 /// A line of poses.tum: "t x y z qx qy qz qw", t in s; empty if the pose is unknown.
 std::string pose_tum(const Step& step);
 
@@ -34,9 +37,8 @@ class FollowFiles {
   /// Throws Error (names the folder) if it cannot be created or written.
   explicit FollowFiles(std::filesystem::path folder);
 
-  /// Throws Error (names the file) if it cannot be written.
-  void add(const Step& step, const std::string& name, const Landmarked& marked = {},
-           const std::string& frame_id = {});
+  /// `line`: the frame's step_json(). Throws Error (names the file) if it cannot be written.
+  void add(const Step& step, const std::string& line);
   /// A line of events.jsonl, with the newline.
   void add_event(const std::string& line);
 

@@ -3,29 +3,15 @@
 #include <cairn/output/follow_page.hpp>
 
 #include <algorithm>
+#include <cairn/output/json.hpp>
 #include <cairn/output/overlay.hpp>
 #include <cairn/output/web/html_template.hpp>
 #include <cairn/output/web/page_parts.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
-
-#include <cairn/output/follow_files.hpp>
 
 namespace cairn::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// Rounded to µm, as in tracks.jsonl.
-double rounded(double value) {
-  constexpr double kSteps = 1e6;
-  return std::round(value * kSteps) / kSteps;
-}
-
-Json json(Point3 p) {
-  return {rounded(p.x), rounded(p.y), rounded(p.z)};
-}
 
 /// The bounding box of a track's visible parts; empty if there are none.
 Rect box_of(const Track& track, const Objects& objects) {
@@ -72,17 +58,16 @@ void keep_covariance_of_place(Json& pose) {
 }
 
 /// The odometry frame in the map: a rotation about z and a translation. Null if unknown.
-Json place_of_odometry(const LandmarksState& state) {
-  if (!state.is_located) return nullptr;
-  const Pose& pose = state.located.map_from_odom;
-  return {{"yaw_rad", rounded(std::atan2(pose.rotation[3], pose.rotation[0]))},
-          {"position_m", json(pose.translation_m)}};
+Json place_of_odometry(const std::optional<Pose>& pose) {
+  if (!pose) return nullptr;
+  return {{"yaw_rad", rounded(std::atan2(pose->rotation[3], pose->rotation[0]))},
+          {"position_m", rounded(pose->translation_m)}};
 }
 
-Json facts(const Step& step, const std::string& name, std::optional<double> milliseconds,
-           const Landmarked& marked) {
-  Json line = Json::parse(step_json(step, name, marked));
-  line["map_from_odom"] = place_of_odometry(marked.state);
+/// `line`: of tracks.jsonl, without frame_id.
+Json facts(Json line, const Step& step, std::optional<double> milliseconds,
+           const std::optional<Pose>& map_from_odom) {
+  line["map_from_odom"] = place_of_odometry(map_from_odom);
   keep_covariance_of_place(line.at("pose"));
   for (Json& track : line.at("tracks")) {
     track.erase("rle");
@@ -117,11 +102,18 @@ Json rig_json(const std::optional<StereoRig>& rig) {
 
 }  // namespace
 
+EncodedFrame encode_step(Json line, const Step& step, View<const Gray> left, View<const Rgb> left_rgb,
+                         std::optional<double> milliseconds, const std::optional<Pose>& map_from_odom) {
+  line.erase("frame_id");
+  const Json maps{{"left", picture_as_uri(left, left_rgb)}, {"tracks", packed_tracks(step)}};
+  return {for_script(facts(std::move(line), step, milliseconds, map_from_odom)), for_script(maps)};
+}
+
 EncodedFrame encode_step(const Step& step, const std::string& name, View<const Gray> left,
                          View<const Rgb> left_rgb, std::optional<double> milliseconds,
                          const Landmarked& marked) {
-  const Json maps{{"left", picture_as_uri(left, left_rgb)}, {"tracks", packed_tracks(step)}};
-  return {for_script(facts(step, name, milliseconds, marked)), for_script(maps)};
+  return encode_step(json_of(step, name, marked.tracks, {}), step, left, left_rgb, milliseconds,
+                     marked.state.map_from_odom());
 }
 
 FollowPage::FollowPage(const std::filesystem::path& file, FollowPageHead head)
@@ -139,7 +131,7 @@ void FollowPage::add(const EncodedFrame& step) {
 
 void FollowPage::add_event(const std::string& line) {
   if (!events_.empty()) events_ += ",";
-  events_ += for_script(Json::parse(line));
+  events_ += script_text(line);
 }
 
 void FollowPage::finish(const LandmarkMap& map) {
@@ -147,7 +139,7 @@ void FollowPage::finish(const LandmarkMap& map) {
   for (const Landmark& landmark : map.list) {
     landmarks.push_back({{"id", number(landmark.id)},
                          {"name", landmark.name},
-                         {"position_m", json(landmark.position_m)},
+                         {"position_m", rounded(landmark.position_m)},
                          {"gone", landmark.is_gone}});
   }
   const Json run{{"command", "follow"},        {"title", head_.title},

@@ -10,6 +10,7 @@
 #include <cairn/io/point_cloud.hpp>
 #include <cairn/io/read_file.hpp>
 #include <cairn/io/rle.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/output/overlay.hpp>
 #include <cairn/output/results.hpp>
 #include <cairn/scene/floor_frame.hpp>
@@ -25,19 +26,11 @@ namespace cairn::io {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 // ---- objects.json ----
 
-/// The double nearest to the float's shortest decimal form: 0.7, not 0.699999988. null for NaN, which JSON
-/// does not have.
 Json json(float value) {
-  if (!std::isfinite(value)) return nullptr;
-  std::array<char, 48> text{};
-  const char* end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  double shortest = 0;
-  std::from_chars(text.data(), end, shortest);
-  return shortest;
+  return shortest(value);
 }
 
 Json json(const std::optional<Vec3>& v) {
@@ -137,15 +130,6 @@ Json option_value(const OptionInfo& option) {
     if (double number = 0; std::from_chars(option.value.data(), end, number).ptr == end) return number;
   }
   return option.value;
-}
-
-Json json(const Config& config) {
-  Json all = Json::object();
-  for (const OptionInfo& option : active_options(config)) {
-    const std::size_t dot = option.name.find('.');
-    all[option.name.substr(0, dot)][option.name.substr(dot + 1)] = option_value(option);
-  }
-  return all;
 }
 
 Json json(const Object& object, View<const ObjectId> labels) {
@@ -474,11 +458,16 @@ void replace(const fs::path& made, const fs::path& folder) {
 
 }  // namespace
 
-std::string config_json(const Config& config) {
-  return json(config).dump();
+Json json_of(const Config& config) {
+  Json all = Json::object();
+  for (const OptionInfo& option : active_options(config)) {
+    const std::size_t dot = option.name.find('.');
+    all[option.name.substr(0, dot)][option.name.substr(dot + 1)] = option_value(option);
+  }
+  return all;
 }
 
-std::string objects_json(const Frame& frame, const Provenance& provenance) {
+Json json_of(const Frame& frame, const Provenance& provenance) {
   Json j;
   j["cairn"] = CAIRN_VERSION;
   j["schema"] = kObjectsSchema;
@@ -486,14 +475,18 @@ std::string objects_json(const Frame& frame, const Provenance& provenance) {
   j["image"] = size_json(frame);
   j["rig"] = json(provenance.rig);
   j["preset"] = provenance.preset;
-  j["config"] = json(provenance.config);
+  j["config"] = json_of(provenance.config);
   j["external_disparity"] = provenance.external_disparity;
   j["timings_ms"] = Json::object();
   for (const StageTime& time : provenance.timings) {
     j["timings_ms"][time.stage] = std::round(time.milliseconds * 1000) / 1000;
   }
   add_findings(j, frame, provenance);
-  return j.dump(1) + "\n";
+  return j;
+}
+
+std::string objects_json(const Frame& frame, const Provenance& provenance) {
+  return json_text(json_of(frame, provenance), 1) + "\n";
 }
 
 std::string frame_row(const std::string& name, const Frame& frame, const Provenance& provenance) {

@@ -26,9 +26,6 @@ struct Provenance {
   std::optional<std::int64_t> stamp_ns = {};
 };
 
-/// All options that `config` reads by section, as a JSON object.
-std::string config_json(const Config& config);
-
 /// The version of objects.json: a reader of 1.x may rely on everything in docs/schema/objects.schema.json for
 /// 1.0; additions increase the number after the dot.
 inline constexpr const char* kObjectsSchema = "1.2";

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cairn/output/json.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace cairn::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::vector<TuningFigure> object_figures(const Measures& measures) {
   std::vector<FrameObjects> objects;
@@ -48,12 +46,12 @@ std::vector<TuningFigure> consistency_figures(const Measures& measures) {
           {"unsteady", "unsteady where still", steady.unsteady_share()}};
 }
 
-Json json_of(const std::vector<TuningFigure>& before, const std::vector<TuningFigure>& after, int frames) {
+Json figures_json(const std::vector<TuningFigure>& before, const std::vector<TuningFigure>& after,
+                  int frames) {
   if (before.empty()) return nullptr;
-  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
   Json j{{"frames", frames}};
   for (std::size_t i = 0; i < before.size(); ++i)
-    j[before[i].key] = {{"before", number(before[i].value)}, {"after", number(after[i].value)}};
+    j[before[i].key] = {{"before", finite(before[i].value)}, {"after", finite(after[i].value)}};
   return j;
 }
 
@@ -82,7 +80,7 @@ std::vector<TuningFigure> tuning_figures(const Measures& measures, TuningGoal go
   return all;
 }
 
-std::string tuning_json(const Tuning& tuned, const std::vector<std::string>& names, std::uint32_t seed) {
+Json json_of(const Tuning& tuned, const std::vector<std::string>& names, std::uint32_t seed) {
   constexpr std::array kGoals{"objects", "disparities", "consistency"};
   constexpr std::array kEnds{"converged", "evaluations", "time", "interrupted"};
   Json j;
@@ -95,16 +93,16 @@ std::string tuning_json(const Tuning& tuned, const std::vector<std::string>& nam
   j["evaluations"] = tuned.search.evaluations;
   j["seconds"] = tuned.seconds;
   j["end"] = kEnds[static_cast<std::size_t>(tuned.end)];
-  j["tuned_on"] = json_of(tuning_figures(tuned.before, tuned.goal), tuning_figures(tuned.after, tuned.goal),
-                          static_cast<int>(tuned.before.size()));
-  j["held_out"] = json_of(tuning_figures(tuned.held_out_before, tuned.goal),
-                          tuning_figures(tuned.held_out_after, tuned.goal),
-                          static_cast<int>(std::count(tuned.held_out.begin(), tuned.held_out.end(), true)));
+  j["tuned_on"] =
+      figures_json(tuning_figures(tuned.before, tuned.goal), tuning_figures(tuned.after, tuned.goal),
+                   static_cast<int>(tuned.before.size()));
+  j["held_out"] = figures_json(
+      tuning_figures(tuned.held_out_before, tuned.goal), tuning_figures(tuned.held_out_after, tuned.goal),
+      static_cast<int>(std::count(tuned.held_out.begin(), tuned.held_out.end(), true)));
   const auto gain = [](const Measures& before, const Measures& after) {
     if (before.empty()) return Json(nullptr);
-    const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
     const Gain g = gain_of(losses_of(before), losses_of(after));
-    return Json{{"mean", number(g.mean)}, {"low", number(g.low)}, {"high", number(g.high)}};
+    return Json{{"mean", finite(g.mean)}, {"low", finite(g.low)}, {"high", finite(g.high)}};
   };
   j["gain"] = {{"tuned_on", gain(tuned.before, tuned.after)},
                {"held_out", gain(tuned.held_out_before, tuned.held_out_after)}};
@@ -120,7 +118,11 @@ std::string tuning_json(const Tuning& tuned, const std::vector<std::string>& nam
     if (before.value != after.value)
       j["found"][before.option] = {{"before", before.value}, {"after", after.value}};
   }
-  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return j;
+}
+
+std::string tuning_json(const Tuning& tuned, const std::vector<std::string>& names, std::uint32_t seed) {
+  return json_text(json_of(tuned, names, seed));
 }
 
 }  // namespace cairn::io

@@ -269,6 +269,11 @@ struct LandmarksState {
   std::vector<LandmarkId> found;       // in this run, ascending
   std::vector<LandmarkId> unreported;  // of these: on previously free floor
   int frames_not_located = 0;
+
+  /// The odometry frame in the map; nullopt if unknown.
+  [[nodiscard]] std::optional<Pose> map_from_odom() const {
+    return is_located ? std::optional(located.map_from_odom) : std::nullopt;
+  }
 };
 
 /// An empty map gets its own frame. In a map with landmarks the camera pose is known only from

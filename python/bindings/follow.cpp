@@ -14,6 +14,7 @@ namespace cairn::python {
 CAIRN_NAMES(MotionRefusal, kMotionRefusals)
 CAIRN_NAMES(TrackState, kTrackStates)
 CAIRN_TUPLE(Point3, x, y, z)
+CAIRN_MEMBERS(LandmarkOfTrack, track, landmark, refusal, is_recognised, score)
 CAIRN_MEMBERS(Stamp, ns)
 CAIRN_MEMBERS(Pose, _rotation, _translation)
 CAIRN_MEMBERS(MotionPrior, _kind, now_from_before, covariance)
@@ -131,7 +132,7 @@ io::Provenance provenance(const FollowSettings& settings, const Config& config,
   return {settings.segmentation.preset, config, rig, {}, false, stamp.ns};
 }
 
-/// Pair by pair: a step, its line of JSON, and the provenance of its frame.
+/// Pair by pair: a step, and the provenance of its frame.
 class PyFollower {
  public:
   PyFollower(FollowSettings settings, PyCalibration calibration, const Exec& exec)
@@ -139,16 +140,15 @@ class PyFollower {
         calibration_(std::move(calibration)),
         follower_(settings_.suited(calibration_.calibration), calibration_.rig(), exec) {}
 
-  std::tuple<Step, std::string, io::Provenance> next(const Picture& left, const Picture& right,
-                                                     std::int64_t ns, const std::optional<MotionPrior>& prior,
-                                                     const std::optional<Pose>& pose) {
+  std::tuple<Step, io::Provenance> next(const Picture& left, const Picture& right, std::int64_t ns,
+                                        const std::optional<MotionPrior>& prior,
+                                        const std::optional<Pose>& pose) {
     const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
     calibration_.check(pair.size());
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
     const Config used = follower_.config().segmentation;  // the frame may change it for the next one
     Step step = follower_.next(pair, Stamp{ns}, prior, pose);
-    std::string json = io::step_json(step, std::to_string(step.index));
-    return {std::move(step), std::move(json), provenance(settings_, used, calibration_.rig(), Stamp{ns})};
+    return {std::move(step), provenance(settings_, used, calibration_.rig(), Stamp{ns})};
   }
   std::vector<OptionInfo> options() {
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
@@ -165,8 +165,10 @@ class PyFollower {
 struct FollowedFrame {
   io::Picture left;
   Step step;
-  std::string json;
   io::Provenance how;
+  std::string name;
+  std::string frame_id;
+  std::vector<LandmarkOfTrack> marks;
   std::map<std::int64_t, std::int64_t> landmarks;  // by track id
   std::vector<std::pair<std::string, std::int64_t>> events;
 };
@@ -195,9 +197,8 @@ class Following {
       return std::nullopt;
     }
     const Config used = run_->config().segmentation;
-    FollowedFrame made{{}, run_->next(*frame), {}, {}, {}, {}};
     const Landmarked& marked = run_->marked();
-    made.json = io::step_json(made.step, frame->name, marked, frame->frame_id);
+    FollowedFrame made{{}, run_->next(*frame), {}, frame->name, frame->frame_id, marked.tracks, {}, {}};
     for (const LandmarkOfTrack& of : marked.tracks) {
       if (of.landmark != LandmarkId::none) made.landmarks[number(of.track)] = number(of.landmark);
     }
@@ -301,6 +302,13 @@ void bind_results(py::module_& m) {
   shows(data, "odometry_suspect", [](const Step& self) { return self.tracks.odometry_suspect; });
   shows(data, "reliability", &reliability_of);
   shows(data, "control", &control_of);
+  m.def("step_json", [](const Step& step, const std::string& name, const std::string& frame_id,
+                        const py::list& landmarks) {
+    Landmarked marked;
+    restore(landmarks, marked.tracks);
+    const py::gil_scoped_release others_run;
+    return io::step_json(step, name, marked, frame_id);
+  });
   m.def(
       "draw_tracks",
       [](const Picture& left, const Step& step) { return io::draw_tracks(left.gray(), left.rgb(), step); },
@@ -319,9 +327,12 @@ void bind_follow(py::module_& m) {
       .def("options", &PyFollower::options, Released());
   m.def("follow", &follow, Released());
   py::class_<FollowedFrame> followed(m, "FollowedFrame");
-  followed.def_readonly("json", &FollowedFrame::json)
-      .def_readonly("landmarks", &FollowedFrame::landmarks)
+  followed.def_readonly("landmarks", &FollowedFrame::landmarks)
       .def_readonly("events", &FollowedFrame::events)
+      .def("line",
+           [](const FollowedFrame& self) {
+             return py::make_tuple(self.name, self.frame_id, state_of(self.marks));
+           })
       .def("parts", [](FollowedFrame& self) {
         return std::tuple(std::move(self.left), std::move(self.step), std::move(self.how));
       });

@@ -144,14 +144,14 @@ class Step:
     frame: Frame = "results of the pair, a Frame", lambda self: Frame._of(self._left, self._data.frame, self._how)
 
     @classmethod
-    def _of(cls, left, data, how, json, landmarks, events):
+    def _of(cls, left, data, how, line, landmarks, events):
         step = cls.__new__(cls)
-        step._left, step._data, step._how, step._json, step._landmarks, step._events = left, data, how, json, landmarks, events
+        step._left, step._data, step._how, step._line, step._landmarks, step._events = left, data, how, line, landmarks, events
         return step
 
     def to_json(self) -> str:
         """The line of tracks.jsonl for this frame, as printed by `cairn follow --json-lines` (docs/formats.md)."""
-        return self._json
+        return _cairn.step_json(self._data, *self._line)
 
     def overlay(self) -> NDArray[numpy.uint8]:
         """The left image with the tracks and their ids drawn in: (h, w, 3) uint8, RGB."""
@@ -193,8 +193,8 @@ class Follower:
         stamp is not later."""
         stamp = stamp_from(stamp_ns, seconds)
         known = None if pose is None else pose_from(pose, "pose")
-        data, json, how = self._pairs.next(left, right, stamp, prior, known)
-        return Step._of(left, data, how, json, {}, [])
+        data, how = self._pairs.next(left, right, stamp, prior, known)
+        return Step._of(left, data, how, (str(data.index), "", []), {}, [])
 
     def __getitem__(self, name: str) -> str:
         """The value of an option by its full name, as text."""
@@ -222,7 +222,7 @@ class Following:
         if followed is None:
             raise StopIteration
         left, data, how = followed.parts()
-        return Step._of(image(left, "left", self._exec, False), data, how, followed.json, followed.landmarks, followed.events)
+        return Step._of(image(left, "left", self._exec, False), data, how, followed.line(), followed.landmarks, followed.events)
 
     def __enter__(self) -> Following:
         return self

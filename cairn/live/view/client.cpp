@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/output/json_line.hpp>
 #include <exception>
 #include <limits>
@@ -17,10 +18,6 @@ using Json = Parameters::Json;
 constexpr std::uint8_t kMessageData = 1;
 constexpr int kError = 2;
 constexpr std::int64_t kMostId = std::numeric_limits<std::uint32_t>::max();
-
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 Json advertisement() {
   Json all = Json::array();
@@ -83,12 +80,12 @@ Client::Client(Parameters& parameters, const std::string& name, const std::strin
        {"supportedEncodings", Json::array({"cdr", "json"})},
        {"metadata", {{"cairn", CAIRN_VERSION}}},
        {"sessionId", session}});
-  static const std::string advertised = text_of(advertisement());
+  static const std::string advertised = io::json_text(advertisement());
   texts_.push_back(advertised);
 }
 
 void Client::say(const Json& message) {
-  texts_.push_back(text_of(message));
+  texts_.push_back(io::json_text(message));
 }
 
 void Client::complain(const std::string& what) {
@@ -228,8 +225,8 @@ std::optional<Outgoing> Client::next() {
   }
   if (!to_tell_.empty()) {
     // Sends current values, as they may have changed several times meanwhile.
-    out.text =
-        text_of({{"op", "parameterValues"}, {"parameters", parameters_.values(std::exchange(to_tell_, {}))}});
+    out.text = io::json_text(
+        {{"op", "parameterValues"}, {"parameters", parameters_.values(std::exchange(to_tell_, {}))}});
     return out;
   }
   for (std::size_t i = 0; i < kChannels; ++i) {

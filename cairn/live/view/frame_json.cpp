@@ -4,35 +4,28 @@
 
 #include <algorithm>
 #include <array>
+#include <cairn/output/json.hpp>
 #include <cairn/output/overlay.hpp>
 #include <cairn/ros/from_step.hpp>
 #include <cairn/scene/floor_frame.hpp>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace cairn::live {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using io::Json;
 
-/// With the seven significant digits of a float; null if not finite.
+/// With the seven significant digits of a float.
 Json json(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.7g", value);
-  return std::strtod(text.data(), nullptr);
+  return io::significant(value, 7);
 }
 Json json(Vec3 v) {
   return Json::array({json(v.x), json(v.y), json(v.z)});
 }
 Json json(Point3 p) {
   return Json::array({json(p.x), json(p.y), json(p.z)});
-}
-
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 // ---- boxes ----
@@ -246,38 +239,38 @@ std::string stats_json(const LiveFrame& frame, const std::optional<StereoRig>& r
     stages.push_back({{"stage", stage.stage}, {"ms", json(stage.milliseconds)}});
   Json objects = Json::array();
   for (const ShownObject& shown : shown_objects(step)) objects.push_back(object_json(shown, floor));
-  return text_of({{"frame", step.index},
-                  {"name", frame.pair->name},
-                  {"stamp_ns", step.stamp.ns},
-                  {"rate_hz", json(frame.rate_hz)},
-                  {"latency_ms", json(ms_between(frame.arrived, frame.done))},
-                  {"stages", stages},
-                  {"drops",
-                   {{"at_source", frame.drops.at_source},
-                    {"replaced", frame.drops.replaced},
-                    {"too_old", frame.drops.too_old}}},
-                  {"source", source_json(state.source.value_or(frame.source))},
-                  {"revision", frame.revision},
-                  {"clients", state.clients},
-                  {"skipped", state.skipped},
-                  {"num_disparities", frame.config->segmentation.match.num_disparities},
-                  {"min_disparity", frame.config->segmentation.match.min_disparity},
-                  {"image", image_json(frame)},
-                  {"rig", rig_json(rig)},
-                  {"ground", ground_json(step.frame.ground, floor)},
-                  {"tunable", state.is_tunable},
-                  {"can_record", state.can_record},
-                  {"recording", state.is_recording},
-                  {"is_file", state.is_file},
-                  {"paused", state.is_paused},
-                  {"objects", objects},
-                  {"camera", camera_json(step, rig)}});
+  return io::json_text({{"frame", step.index},
+                        {"name", frame.pair->name},
+                        {"stamp_ns", step.stamp.ns},
+                        {"rate_hz", json(frame.rate_hz)},
+                        {"latency_ms", json(ms_between(frame.arrived, frame.done))},
+                        {"stages", stages},
+                        {"drops",
+                         {{"at_source", frame.drops.at_source},
+                          {"replaced", frame.drops.replaced},
+                          {"too_old", frame.drops.too_old}}},
+                        {"source", source_json(state.source.value_or(frame.source))},
+                        {"revision", frame.revision},
+                        {"clients", state.clients},
+                        {"skipped", state.skipped},
+                        {"num_disparities", frame.config->segmentation.match.num_disparities},
+                        {"min_disparity", frame.config->segmentation.match.min_disparity},
+                        {"image", image_json(frame)},
+                        {"rig", rig_json(rig)},
+                        {"ground", ground_json(step.frame.ground, floor)},
+                        {"tunable", state.is_tunable},
+                        {"can_record", state.can_record},
+                        {"recording", state.is_recording},
+                        {"is_file", state.is_file},
+                        {"paused", state.is_paused},
+                        {"objects", objects},
+                        {"camera", camera_json(step, rig)}});
 }
 
 std::string stats_json(const ViewState& state) {
-  return text_of({{"frame", nullptr},
-                  {"clients", state.clients},
-                  {"source", source_json(state.source.value_or(io::SourceStatus{}))}});
+  return io::json_text({{"frame", nullptr},
+                        {"clients", state.clients},
+                        {"source", source_json(state.source.value_or(io::SourceStatus{}))}});
 }
 
 std::string scene_json(const LiveFrame& frame, const std::optional<StereoRig>& rig) {
@@ -292,7 +285,7 @@ std::string scene_json(const LiveFrame& frame, const std::optional<StereoRig>& r
   }
   // Deletes all entities of the previous frame; those still present are sent again.
   const Json deletion{{"timestamp", stamp}, {"type", 1}, {"id", ""}};
-  return text_of({{"deletions", Json::array({deletion})}, {"entities", entities}});
+  return io::json_text({{"deletions", Json::array({deletion})}, {"entities", entities}});
 }
 
 const std::string_view kStatsSchema = R"({

@@ -6,6 +6,7 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/io/config_files.hpp>
+#include <cairn/output/json.hpp>
 #include <cairn/output/json_line.hpp>
 #include <charconv>
 #include <cmath>
@@ -166,7 +167,7 @@ std::string Parameters::options_json() const {
                    {"active", option.active},
                    {"first", std::move(first)}});
   }
-  return all.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return io::json_text(all) + "\n";
 }
 
 std::string Parameters::config_yaml() const {

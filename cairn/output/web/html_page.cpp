@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/output/json.hpp>
 #include <cairn/output/overlay.hpp>
 #include <cairn/output/web/html_page.hpp>
 #include <cairn/output/web/html_template.hpp>
@@ -8,12 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 
 namespace cairn::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // ---- maps ----
 
@@ -61,11 +59,10 @@ Json label_places(View<const Id> labels) {
 }
 
 /// The part of objects.json that the page needs: all but the masks, which it has as maps.
-Json without_masks(const std::string& objects_json) {
-  if (objects_json.empty()) return nullptr;
-  Json whole = Json::parse(objects_json);
-  for (Json& object : whole.at("objects")) object.erase("segmentation");
-  return whole;
+Json without_masks(Json result) {
+  if (result.is_null()) return result;
+  for (Json& object : result.at("objects")) object.erase("segmentation");
+  return result;
 }
 
 Size size_of(const PageFrame& frame) {
@@ -86,7 +83,7 @@ Json valid_share(View<const float> disparity_px) {
   return static_cast<double>(valid) / static_cast<double>(disparity_px.size().area());
 }
 
-Json facts(const PageFrame& frame) {
+Json facts(const PageFrame& frame, Json result) {
   const Size size = size_of(frame);
   const DisparitySpan span =
       disparity_span(frame.disparity_px.empty() ? frame.true_disparity_px : frame.disparity_px);
@@ -97,7 +94,7 @@ Json facts(const PageFrame& frame) {
           {"span", {span.low, span.high}},
           {"objects", label_places(frame.objects)},
           {"true_objects", label_places(frame.true_objects)},
-          {"result", without_masks(frame.objects_json)}};
+          {"result", without_masks(std::move(result))}};
 }
 
 Json maps(const PageFrame& frame) {
@@ -120,20 +117,25 @@ Json maps(const PageFrame& frame) {
 
 }  // namespace
 
+EncodedFrame encode_frame(const PageFrame& frame, Json result) {
+  return {for_script(facts(frame, std::move(result))), for_script(maps(frame))};
+}
+
 EncodedFrame encode_frame(const PageFrame& frame) {
-  return {for_script(facts(frame)), for_script(maps(frame))};
+  return encode_frame(frame, frame.objects_json.empty() ? Json(nullptr) : Json::parse(frame.objects_json));
 }
 
 std::string html_page(const PageHead& head, const std::vector<EncodedFrame>& frames) {
-  Json run{{"command", head.command},
-           {"title", head.title},
-           {"cairn", CAIRN_VERSION},
-           {"frames", frames.size()},
-           {"look", look()}};
-  run["evaluation"] = head.evaluation.empty() ? Json(nullptr) : Json::parse(head.evaluation);
+  std::string run = for_script({{"command", head.command},
+                                {"title", head.title},
+                                {"cairn", CAIRN_VERSION},
+                                {"frames", frames.size()},
+                                {"look", look()}});
+  run.back() = ',';
+  run += "\"evaluation\":" + (head.evaluation.empty() ? "null" : script_text(head.evaluation)) + "}";
   const PageShell shell =
       page_shell(kPageLayout, kPageStyle, kPageScript, "cairn " + head.command + ": " + head.title);
-  std::string page = shell.before + script_block("run", for_script(run));
+  std::string page = shell.before + script_block("run", run);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     page += script_block("facts-" + std::to_string(i), frames[i].facts);
     page += script_block("maps-" + std::to_string(i), frames[i].maps);

@@ -32,7 +32,7 @@ struct PageFrame {
   View<const Space> space;
   View<const TruthId> true_objects;
   View<const float> true_disparity_px;
-  std::string objects_json;  // the text of an objects.json, for the tables; may be empty
+  std::string objects_json;  // the text of an objects.json file, for the tables; may be empty
 };
 
 /// A frame as text, so that its images need not be kept until the page is written. Ids and reasons are

@@ -30,8 +30,12 @@ std::string base64(const std::uint8_t* bytes, std::size_t count) {
 }
 
 std::string for_script(const Json& json) {
+  return script_text(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string script_text(const std::string& json) {
   std::string text;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+  for (const char c : json) {
     if (c == '<') {
       text += "\\u003c";
     } else {

@@ -15,6 +15,8 @@ namespace cairn::io {
 
 /// JSON for use inside of <script>, with "</script" and "<!--" escaped. Invalid UTF-8 in names is replaced.
 std::string for_script(const nlohmann::ordered_json& json);
+/// The same for a text of JSON.
+std::string script_text(const std::string& json);
 /// A block of data that the script of the page reads by its id. `text`: from for_script().
 std::string script_block(const std::string& id, const std::string& text);
 
