@@ -6,10 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cairn/output/follow_files.hpp>
 #include <cerrno>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "interrupt.hpp"
@@ -17,7 +15,6 @@
 namespace cairn::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
 
 constexpr std::size_t kMostWaiting = 16;  // frames
@@ -46,8 +43,8 @@ bool write_to_stdout(std::string_view text, IsOver&& is_over) {
 
 }  // namespace
 
-JsonLines::JsonLines(std::string preset, std::optional<StereoRig> rig, bool tracks, bool waits)
-    : preset_(std::move(preset)), rig_(rig), tracks_(tracks), waits_(waits), thread_([this] { work(); }) {}
+JsonLines::JsonLines(live::MessageForm form, bool waits)
+    : form_(std::move(form)), waits_(waits), thread_([this] { work(); }) {}
 
 JsonLines::~JsonLines() {
   finish();
@@ -88,17 +85,12 @@ bool JsonLines::is_closed() const {
 }
 
 std::string JsonLines::line_of(const live::LiveFrame& frame) const {
-  if (tracks_) {
-    Landmarked marked;
-    marked.tracks = frame.landmarks;
-    marked.events = frame.events;
-    return io::step_json(frame.step, frame.pair->name, marked, frame.pair->frame_id);
-  }
-  Json line{{"name", frame.pair->name}, {"stamp_ns", frame.step.stamp.ns}};
-  if (!frame.pair->frame_id.empty()) line["frame_id"] = frame.pair->frame_id;
-  line.update(Json::parse(io::objects_json(
-      frame.step.frame, {preset_, frame.config->segmentation, rig_, {}, false, frame.step.stamp.ns})));
-  return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (form_.tracks) return *text_of(frame, form_);
+  const io::SequenceFrame& pair = *frame.pair;
+  io::Json line{{"name", pair.name}, {"stamp_ns", frame.step.stamp.ns}};
+  if (!pair.frame_id.empty()) line["frame_id"] = pair.frame_id;
+  line.update(*results_of(frame, form_));
+  return io::json_text(line) + "\n";
 }
 
 void JsonLines::work() {

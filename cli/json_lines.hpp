@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/live/live_frame.hpp>
+#include <cairn/live/topics.hpp>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -18,7 +18,7 @@ namespace cairn::cli {
 class JsonLines : public live::Sink {
  public:
   /// `waits`: wait for the reader, so that no line is lost.
-  JsonLines(std::string preset, std::optional<StereoRig> rig, bool tracks, bool waits);
+  JsonLines(live::MessageForm form, bool waits);
   ~JsonLines() override;
 
   void offer(const live::LiveFramePtr& frame) override;
@@ -32,9 +32,7 @@ class JsonLines : public live::Sink {
   [[nodiscard]] std::string line_of(const live::LiveFrame& frame) const;
   void work();
 
-  std::string preset_;
-  std::optional<StereoRig> rig_;
-  bool tracks_;
+  live::MessageForm form_;
   bool waits_;
   mutable std::mutex mutex_;  // of the next four
   std::condition_variable changed_;

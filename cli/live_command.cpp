@@ -119,8 +119,10 @@ int live_command(LiveCommandOptions options) {
   files.is_map_read_only = options.map_read_only;
   std::unique_ptr<JsonLines> lines;
   if (options.json_lines) {
-    lines = std::make_unique<JsonLines>(preset_of(options.config), source->rig(), !options.no_tracks,
-                                        options.every_frame);
+    lines = std::make_unique<JsonLines>(
+        live::MessageForm{
+            .rig = source->rig(), .preset = preset_of(options.config), .tracks = !options.no_tracks},
+        options.every_frame);
   }
   live::LiveOptions how;
   how.every_frame = options.every_frame;

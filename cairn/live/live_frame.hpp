@@ -4,7 +4,10 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,13 +32,41 @@ struct Drops {
   std::uint64_t too_old = 0;    // older than LiveOptions::max_age before processing
 };
 
+/// What the sinks make of a frame: the first that asks for it makes it, the others share it. From any thread.
+class Products {
+ public:
+  /// If `make` throws, the next that asks tries again. A key always has the same type.
+  template <class Make>
+  auto get(const std::string& key, const Make& make) const {
+    using Product = decltype(make());
+    Entry& entry = entry_of(key);
+    const std::lock_guard lock(entry.mutex);
+    if (!entry.product) entry.product = std::make_shared<const Product>(make());
+    return std::static_pointer_cast<const Product>(entry.product);
+  }
+
+ private:
+  struct Entry {
+    std::mutex mutex;
+    std::shared_ptr<const void> product;
+  };
+  Entry& entry_of(const std::string& key) const {
+    const std::lock_guard lock(mutex_);
+    return entries_[key];
+  }
+
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, Entry> entries_;
+};
+
 /// The results of one pair, shared by all sinks, hence immutable.
 struct LiveFrame {
   std::shared_ptr<const io::SequenceFrame> pair;
   Step step;
   std::vector<LandmarkOfTrack> landmarks;
   std::vector<LandmarkEvent> events;
-  Clock::time_point arrived;  // of the pair
+  std::optional<Pose> map_from_odom;  // nullopt if unknown
+  Clock::time_point arrived;          // of the pair
   Clock::time_point started;
   Clock::time_point done;
   std::vector<io::StageTime> stages;
@@ -45,6 +76,7 @@ struct LiveFrame {
   // The configuration used; the revision counts the changes.
   std::shared_ptr<const FollowConfig> config;
   std::uint64_t revision = 0;
+  Products products;
 };
 using LiveFramePtr = std::shared_ptr<const LiveFrame>;
 

@@ -7,26 +7,22 @@
 #include <cairn/core/error.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/config_files.hpp>
-#include <cairn/output/follow_files.hpp>
 #include <condition_variable>
 #include <cstdio>
 #include <ctime>
 #include <deque>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <thread>
 
 #include <cairn/input/camera/without_password.hpp>
+#include <cairn/live/topics.hpp>
 #include <cairn/ros/mcap.hpp>
 
 namespace cairn::live {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// Step between the pixels of a cloud.
-constexpr int kCloudStride = 2;
+constexpr int kCloudStride = 2;  // px
 
 std::string config_text(const std::string& preset, const FollowConfig& config) {
   return "preset: " + preset + "\n" + io::options_yaml(options(config));
@@ -40,17 +36,12 @@ std::string utc_text(const char* format) {
   return {text.data(), std::strftime(text.data(), text.size(), format, &parts)};
 }
 
-bool is_same(View<const Gray> a, View<const Gray> b) {
-  for (int y = 0; y < a.height(); ++y)
-    if (!std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) return false;
-  return true;
-}
-
 /// A recording file and its channels.
 class Recording {
  public:
   Recording(const std::filesystem::path& path, const RecordedRun& run, const RecorderOptions& options)
-      : run_(run), what_(options.what), file_(path) {
+      : form_{.rig = run.rig, .cloud_stride = kCloudStride, .preset = run.preset, .tracks = run.tracks},
+        file_(path) {
     file_.metadata("cairn", {{"version", CAIRN_VERSION},
                              {"source", run.source},
                              {"stamps_from", run.stamps_from},
@@ -61,30 +52,12 @@ class Recording {
       file_.attachment("calib.txt", "text/plain",
                        io::calibration_text(*run.rig, run.size, run.disparities, run.ground));
     }
-    if (what_.input) {
-      left_ = add<ros::Image>("/stereo/left/image_rect");
-      right_ = add<ros::Image>("/stereo/right/image_rect");
-      if (run.rig) {
-        left_info_ = add<ros::CameraInfo>("/stereo/left/camera_info");
-        right_info_ = add<ros::CameraInfo>("/stereo/right/camera_info");
-      }
+    for (const Topic& topic : topics()) {
+      if (topic.recorded == nullptr || !(options.what.*topic.recorded)) continue;
+      if (topic.declared == Declared::with_rig && !run.rig) continue;
+      const bool is_declared = topic.declared != Declared::with_first_message;
+      channels_.emplace_back(&topic, is_declared ? declare(topic) : std::uint16_t{0});
     }
-    if (what_.objects) {
-      objects_ = add<ros::Detection3DArray>("/cairn/objects");
-      frames_ = add<ros::String>("/cairn/frames");
-      stats_ = add<ros::String>("/cairn/stats");
-      transforms_ = add<ros::TFMessage>("/tf");
-    }
-    if (what_.disparity) disparity_ = add<ros::DisparityImage>("/cairn/disparity");
-    if (what_.masks) {
-      labels_ = add<ros::Image>("/cairn/labels");
-      reject_ = add<ros::Image>("/cairn/reject");
-    }
-    if (what_.clouds) {
-      obstacles_ = add<ros::PointCloud2>("/cairn/obstacles");
-      floor_ = add<ros::PointCloud2>("/cairn/floor");
-    }
-    if (what_.grid) grid_ = add<ros::OccupancyGrid>("/cairn/grid");
   }
 
   void add_frame(const LiveFrame& frame, std::uint64_t skipped_before);
@@ -93,138 +66,47 @@ class Recording {
   [[nodiscard]] std::uint64_t bytes() const { return file_.bytes(); }
 
  private:
-  template <class M>
-  std::uint16_t add(const char* topic) {
-    return file_.channel(topic, M::kType, ros::schema_of<M>());
-  }
-  template <class M>
-  void write(std::uint16_t channel, Stamp stamp, const M& message) {
-    file_.message(channel, stamp, ros::encode(message));
+  std::uint16_t declare(const Topic& topic) {
+    return file_.channel(full_name(topic), topic.type, topic.schema());
   }
   void write_text(std::uint16_t& channel, const char* topic, Stamp stamp, const std::string& text) {
-    if (channel == 0) channel = add<ros::String>(topic);
-    write(channel, stamp, ros::String{text});
+    if (channel == 0) channel = file_.channel(topic, ros::String::kType, ros::schema_of<ros::String>());
+    file_.message(channel, stamp, ros::encode(ros::String{text}));
   }
-  void add_input(const LiveFrame& frame, const ros::Header& header);
-  void add_objects(const LiveFrame& frame, const ros::Header& header);
   void add_config(const LiveFrame& frame);
 
-  RecordedRun run_;
-  RecordWhat what_;
-  ros::FrameNames names_;  // of the previous frame
+  MessageForm form_;
   ros::McapWriter file_;
   std::optional<std::uint64_t> revision_;
-  // Channel ids; 0 = none.
-  std::uint16_t left_ = 0;
-  std::uint16_t left_grey_ = 0;
-  std::uint16_t right_ = 0;
-  std::uint16_t left_info_ = 0;
-  std::uint16_t right_info_ = 0;
-  std::uint16_t objects_ = 0;
-  std::uint16_t frames_ = 0;
-  std::uint16_t stats_ = 0;
-  std::uint16_t transforms_ = 0;
-  std::uint16_t disparity_ = 0;
-  std::uint16_t labels_ = 0;
-  std::uint16_t reject_ = 0;
-  std::uint16_t obstacles_ = 0;
-  std::uint16_t floor_ = 0;
-  std::uint16_t grid_ = 0;
+  // Channel ids; 0: not yet declared.
+  std::vector<std::pair<const Topic*, std::uint16_t>> channels_;
   std::uint16_t config_ = 0;
   std::uint16_t skipped_ = 0;
 };
 
 void Recording::add_frame(const LiveFrame& frame, std::uint64_t skipped_before) {
   const Stamp stamp = frame.step.stamp;
-  names_ = ros::frame_names(frame.pair->frame_id);
-  const ros::Header header = ros::header_of(stamp, names_.camera);
   add_config(frame);
   if (skipped_before > 0)
-    write_text(skipped_, "/cairn/skipped", stamp, Json{{"frames", skipped_before}}.dump());
-  if (what_.input) add_input(frame, header);
-  if (what_.objects) add_objects(frame, header);
-  const Frame& found = frame.step.frame;
-  if (what_.disparity) {
-    write(disparity_, stamp,
-          ros::disparity_image_of(header, found, run_.rig, frame.config->segmentation.match));
-  }
-  if (what_.masks) {
-    write(labels_, stamp, ros::labels_of(header, frame.step));
-    write(reject_, stamp, ros::reject_of(header, found));
-  }
-  if (what_.clouds) {
-    const io::Picture& left = frame.pair->left;
-    for (const auto& [channel, space] : {std::pair{obstacles_, Space::obstacle}, {floor_, Space::floor}})
-      write(channel, stamp, ros::cloud_of(header, found, space, run_.rig, left.gray, left.rgb, kCloudStride));
-  }
-  if (what_.grid) {
-    if (const auto grid = ros::grid_of(ros::header_of(stamp, names_.floor), found, run_.rig,
-                                       frame.config->segmentation.space))
-      write(grid_, stamp, *grid);
+    write_text(skipped_, "/cairn/skipped", stamp, io::json_text({{"frames", skipped_before}}));
+  for (auto& [topic, channel] : channels_) {
+    const MessagePtr message = message_of(*topic, frame, form_);
+    if (!message) continue;
+    if (channel == 0) channel = declare(*topic);
+    file_.message(channel, stamp, *message);
   }
 }
 
 /// With the first frame as an attachment, which a later run can use; later changes as messages.
 void Recording::add_config(const LiveFrame& frame) {
   if (revision_ == frame.revision) return;
-  const std::string text = config_text(run_.preset, *frame.config);
+  const std::string text = config_text(form_.preset, *frame.config);
   if (!revision_) {
     file_.attachment("config.yaml", "application/yaml", text);
   } else {
     write_text(config_, "/cairn/config", frame.step.stamp, text);
   }
   revision_ = frame.revision;
-}
-
-void Recording::add_input(const LiveFrame& frame, const ros::Header& header) {
-  const io::SequenceFrame& pair = *frame.pair;
-  if (pair.left.rgb.empty()) {
-    write(left_, pair.stamp, ros::image_of(header, pair.left.gray.view()));
-  } else {
-    write(left_, pair.stamp, ros::image_of(header, pair.left.rgb.view()));
-    // In pairs rectified here, colour and grey are interpolated separately, so grey may differ.
-    const Image<Gray> grey = io::grey_of(pair.left.rgb.view());
-    if (!is_same(grey, pair.left.gray)) {
-      if (left_grey_ == 0) left_grey_ = add<ros::Image>("/stereo/left/image_grey");
-      write(left_grey_, pair.stamp, ros::image_of(header, pair.left.gray.view()));
-    }
-  }
-  write(right_, pair.stamp, ros::image_of(header, pair.right.view()));
-  if (!run_.rig) return;
-  write(left_info_, pair.stamp, ros::camera_info_of(header, *run_.rig, run_.size, ros::Side::left));
-  write(right_info_, pair.stamp, ros::camera_info_of(header, *run_.rig, run_.size, ros::Side::right));
-}
-
-void Recording::add_objects(const LiveFrame& frame, const ros::Header& header) {
-  const Stamp stamp = frame.step.stamp;
-  write(objects_, stamp, ros::detections_of(header, frame.step, run_.rig));
-  if (run_.tracks) {
-    Landmarked marked;
-    marked.tracks = frame.landmarks;
-    marked.events = frame.events;
-    write(frames_, stamp,
-          ros::String{io::step_json(frame.step, frame.pair->name, marked, frame.pair->frame_id)});
-  } else {
-    write(frames_, stamp,
-          ros::String{io::objects_json(
-              frame.step.frame,
-              {run_.preset, frame.config->segmentation, run_.rig, {}, false, frame.step.stamp.ns})});
-  }
-  Json stages = Json::object();
-  for (const io::StageTime& stage : frame.stages) stages[stage.stage] = stage.milliseconds;
-  const Json stats{{"name", frame.pair->name},
-                   {"index", frame.pair->index},
-                   {"rate_hz", frame.rate_hz},
-                   {"waited_ms", ms_between(frame.arrived, frame.started)},
-                   {"worked_ms", ms_between(frame.started, frame.done)},
-                   {"stages_ms", stages},
-                   {"not_worked_on",
-                    {{"at_source", frame.drops.at_source},
-                     {"replaced", frame.drops.replaced},
-                     {"too_old", frame.drops.too_old}}}};
-  write(stats_, stamp, ros::String{stats.dump(-1, ' ', false, Json::error_handler_t::replace)});
-  ros::TFMessage transforms = ros::transforms_of(names_, frame.step, run_.rig);
-  if (!transforms.transforms.empty()) write(transforms_, stamp, transforms);
 }
 
 }  // namespace

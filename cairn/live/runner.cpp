@@ -155,6 +155,7 @@ LiveFramePtr Runner::work(PairPtr pair) {
     frame->step = follow_.next(*pair);
     frame->landmarks = follow_.marked().tracks;
     frame->events = follow_.marked().events;
+    frame->map_from_odom = follow_.marked().state.map_from_odom();
     take_over(frame->step.control);
   } else {
     frame->step.index = frames_;

@@ -12,7 +12,4 @@ namespace cairn::dds {
 /// Like live::publish_ros2().
 std::unique_ptr<live::Sink> ros2_sink(const live::Ros2Options& options, const std::optional<StereoRig>& rig);
 
-/// The content of NAMESPACE/stats: the status of the run, as JSON. Times are in ms.
-std::string stats_json(const live::LiveFrame& frame, std::uint64_t skipped);
-
 }  // namespace cairn::dds

@@ -30,7 +30,7 @@ constexpr ChannelBits bit_of(Channel channel) {
 }
 
 struct ChannelInfo {
-  std::string_view topic;
+  std::string topic;
   std::string_view encoding;
   std::string_view schema_name;
   std::string schema;
@@ -44,7 +44,7 @@ struct ViewMessage {
   Channel channel = Channel::left;
   std::uint64_t frame = 0;     // counted by the server
   std::uint64_t stamp_ns = 0;  // of the pair
-  std::vector<std::uint8_t> payload;
+  std::shared_ptr<const std::vector<std::uint8_t>> payload;
   std::size_t picture_bytes = 0;  // of Channel::left: size of the JPEG file at the end of the payload
 };
 using ViewMessagePtr = std::shared_ptr<const ViewMessage>;
@@ -61,7 +61,8 @@ struct ViewState {
   std::optional<io::SourceStatus> source;  // now; nullopt: as of the frame
 };
 
-/// Throws Error if a message cannot hold the stamp of the frame, or its image cannot be encoded.
+/// Without a payload if the frame lacks the data. Throws Error if a message cannot hold the stamp of the frame, or
+/// its image cannot be encoded.
 ViewMessage encode(Channel channel, const LiveFrame& frame, const std::optional<StereoRig>& rig,
                    const ViewState& state);
 

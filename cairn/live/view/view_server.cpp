@@ -386,11 +386,12 @@ class ViewServer::Hub {
   ViewMessagePtr encoded_message(Channel channel, const LiveFrame& frame, std::uint64_t number) {
     try {
       auto message = std::make_shared<ViewMessage>(encode(channel, frame, run_.rig, state()));
+      if (!message->payload) return nullptr;
       message->frame = number;
       ++encoded_;
       return message;
     } catch (const std::exception& error) {  // running out of memory here must not end the robot's run
-      trouble_ = std::string(channels()[index_of(channel)].topic) + " could not be sent: " + error.what();
+      trouble_ = channels()[index_of(channel)].topic + " could not be sent: " + error.what();
       return nullptr;
     }
   }
@@ -497,7 +498,7 @@ class MovingPicture : public Viewer, public std::enable_shared_from_this<MovingP
     sending_ = std::exchange(waiting_, nullptr);
     text_ =
         "Content-Type: image/jpeg\r\nContent-Length: " + std::to_string(sending_->picture_bytes) + "\r\n\r\n";
-    const auto& payload = sending_->payload;
+    const auto& payload = *sending_->payload;
     const std::array<asio::const_buffer, 3> parts{
         asio::buffer(text_),
         asio::buffer(payload.data() + (payload.size() - sending_->picture_bytes), sending_->picture_bytes),
@@ -611,7 +612,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
     stream_.binary(out_.message != nullptr);
     if (out_.message) {
       const std::array<asio::const_buffer, 2> parts{asio::buffer(out_.head),
-                                                    asio::buffer(out_.message->payload)};
+                                                    asio::buffer(*out_.message->payload)};
       stream_.async_write(parts, done);
     } else {
       stream_.async_write(asio::buffer(out_.text), done);
