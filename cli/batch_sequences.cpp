@@ -3,8 +3,8 @@
 #include <cairn/core/error.hpp>
 #include <cairn/input/mcap_sequence.hpp>
 #include <cairn/io/config_files.hpp>
-#include <cairn/live/sequence_run.hpp>
-#include <cairn/output/json.hpp>
+#include <cairn/live/runner.hpp>
+#include <cairn/live/topics.hpp>
 #include <cairn/sequence/follow_config.hpp>
 #include <cstdlib>
 
@@ -150,8 +150,8 @@ struct TrackRows::State {
   const Exec& exec;
   BatchSequence of;
   std::unique_ptr<io::Sequence> opened;
-  std::optional<io::SequenceRun> run;
-  std::optional<io::SequenceFrame> read_ahead;
+  std::unique_ptr<live::Runner> run;
+  live::LiveFramePtr read_ahead;
   std::size_t next = 0;  // next frame to follow
   std::string ended;     // why no further frame can be followed
 
@@ -163,8 +163,9 @@ struct TrackRows::State {
     ended.clear();
     try {
       opened = open(of, {of.first, {}, of.step}, exec.pool);
-      run.emplace(*opened, of.source, io::CompanionFiles{},
-                  resolve_follow(config, opened->disparities(), opened->ground()), exec);
+      run = std::make_unique<live::Runner>(*opened, of.source, io::CompanionFiles{},
+                                           resolve_follow(config, opened->disparities(), opened->ground()),
+                                           live::LiveOptions::unpaced(), exec);
     } catch (const Error& error) {
       ended = error.what();
     }
@@ -176,12 +177,10 @@ struct TrackRows::State {
     next += of.step;
     if (!ended.empty()) return batch::error_row(name, ended);
     try {
-      if (!read_ahead) read_ahead = opened->next();
-      if (!read_ahead || read_ahead->index != index)
+      if (!read_ahead) read_ahead = run->next();
+      if (!read_ahead || read_ahead->pair->index != index)
         return batch::error_row(name, of.source + ": frame " + std::to_string(index) + " cannot be read");
-      const io::SequenceFrame frame = *std::exchange(read_ahead, std::nullopt);
-      const Step step = run->next(frame);
-      io::Json line = io::json_of(step, name, run->marked().tracks, frame.frame_id);
+      io::Json line = *results_of(*std::exchange(read_ahead, nullptr), {});
       line["frame"] = name;
       line.erase("name");
       return io::json_text(line);

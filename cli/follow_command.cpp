@@ -1,133 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/core/error.hpp>
-#include <cairn/input/camera/without_password.hpp>
-#include <cairn/io/atomic_file.hpp>
-#include <cairn/live/sequence_run.hpp>
-#include <cairn/output/follow_files.hpp>
-#include <cairn/output/follow_page.hpp>
-#include <cairn/output/json.hpp>
-#include <cairn/sequence/follower.hpp>
 #include <chrono>
-#include <cmath>
-#include <filesystem>
 #include <iostream>
-#include <map>
-#include <numbers>
 #include <optional>
-#include <set>
 
 #include "commands.hpp"
 #include "common.hpp"
-#include "follow_options.hpp"
 #include "interrupt.hpp"
-#include "source_options.hpp"
+#include "run_sinks.hpp"
 
 namespace cairn::cli {
 namespace {
-
-namespace fs = std::filesystem;
-using io::Json;
-using Clock = std::chrono::steady_clock;
-
-struct FollowOptions {
-  SourceInput source;
-  std::string odometry;
-  std::string imu;
-  std::string poses;
-  std::string scan;
-  std::string map;
-  bool map_read_only = false;
-  std::string start;
-  ConfigOptions config;
-  ExecOptions exec;
-  std::string output;
-  bool frames_out = false;
-  bool json_lines = false;
-  bool html = false;
-};
-
-/// Totals of a run, for its last line and summary.json.
-struct Run {
-  FollowConfig config;  // at the start
-  std::vector<double> milliseconds;
-  double path_m = 0;
-  std::optional<Point3> place;
-  std::set<std::int64_t> confirmed;
-  int lost = 0;
-  int keyframes = 0;
-  std::map<std::string, int> refusals;
-  std::vector<LandmarkEvent> events;
-  int unreliable = 0;
-  // For each witness and for the resulting value: sum, and number of frames where it is known.
-  std::map<std::string, std::pair<double, int>> reliability;
-
-  void add(const std::string& name, std::optional<float> share) {
-    if (!share) return;
-    reliability[name].first += double{*share};
-    ++reliability[name].second;
-  }
-
-  void add(const Step& step, double ms) {
-    milliseconds.push_back(ms);
-    if (step.is_lost) {
-      ++lost;
-      place.reset();
-    } else {
-      const Point3 now = step.map_from_camera.translation_m;
-      if (place) path_m += length(now - *place);
-      place = now;
-    }
-    if (step.reliability.is_unreliable) ++unreliable;
-    add("value", step.reliability.value);
-    for (const WitnessName& witness : kWitnesses)
-      add(std::string(witness.name), step.reliability.witnesses.*witness.value);
-    if (step.motion.is_new_keyframe) ++keyframes;
-    if (step.index > 0 && step.motion.refusal != MotionRefusal::none)
-      ++refusals[choice_name(step.motion.refusal, kMotionRefusals)];
-    for (const Track& track : step.tracks.list) {
-      if (track.state != TrackState::tentative) confirmed.insert(number(track.id));
-    }
-  }
-
-  [[nodiscard]] double percentile(double share) const {
-    if (milliseconds.empty()) return 0;
-    std::vector<double> sorted = milliseconds;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-  }
-};
-
-Json summary_json(const Run& run, const FollowOptions& options, const io::Sequence& source,
-                  const FollowConfig& config, const std::string& state) {
-  Json refusals = Json::object();
-  for (const auto& [reason, count] : run.refusals) refusals[reason] = count;
-  Json reliability = Json::object();
-  for (const auto& [name, sum] : run.reliability) reliability[name] = sum.first / sum.second;
-  reliability["unreliable_frames"] = run.unreliable;
-  Json remarks = Json::array();
-  for (const io::SourceRemark& remark : source.remarks())
-    remarks.push_back({{"what", remark.what}, {"frames", remark.count}, {"first", remark.first}});
-  Json settings = Json::object();
-  for (const OptionInfo& option : cairn::options(config)) {
-    if (option.active) settings[option.name] = option.value;
-  }
-  return {{"cairn", CAIRN_VERSION},
-          {"source", io::without_password(options.source.source)},
-          {"stamps", source.stamps_from()},
-          {"state", state},
-          {"frames", run.milliseconds.size()},
-          {"milliseconds", {{"median", run.percentile(0.5)}, {"p99", run.percentile(0.99)}}},
-          {"path_m", run.path_m},
-          {"lost_frames", run.lost},
-          {"keyframes", run.keyframes},
-          {"refusals", refusals},
-          {"reliability", reliability},
-          {"tracks", run.confirmed.size()},
-          {"remarks", remarks},
-          {"options", settings}};
-}
 
 std::string line_of(const Step& step, const std::string& name) {
   const auto count = [&](auto&& which) {
@@ -159,71 +43,6 @@ std::string progress_words(std::size_t done, std::optional<std::size_t> all, con
   return words;
 }
 
-/// "X,Y,DEGREES" on the map's floor.
-std::optional<Pose> start_in_map(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  double x = 0;
-  double y = 0;
-  double degrees = 0;
-  int used = 0;
-  const int read = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &x, &y, &degrees, &used);
-  if (read != 3 || static_cast<std::size_t>(used) != text.size() || !std::isfinite(x + y + degrees))
-    throw Error("--start " + text + ": expected X,Y,DEGREES, e.g. 0,0,0 for where the map began");
-  Pose pose = rotation_about({0, 0, degrees * std::numbers::pi / 180});
-  pose.translation_m = {x, y, 0};
-  return pose;
-}
-
-std::optional<fs::path> named(const std::string& file) {
-  return file.empty() ? std::nullopt : std::optional<fs::path>(file);
-}
-
-/// The additional inputs; rejects options that exclude each other.
-io::CompanionFiles companions(const FollowOptions& options, const io::Sequence& source) {
-  refuse_two_priors(options.odometry, options.imu);
-  if (!options.poses.empty() && !(options.odometry.empty() && options.imu.empty()))
-    throw Error("--poses: already gives the motion, expected neither --odometry nor --imu");
-  if (options.map_read_only && options.map.empty()) throw Error("--read-only: needs --map FILE.db");
-  const std::optional<Pose> start = start_in_map(options.start);
-  if (start && options.map.empty()) throw Error("--start: needs --map FILE.db");
-  if (!source.rig()) {
-    for (const auto& [given, name] : {std::pair{!options.map.empty(), "--map"},
-                                      {!options.odometry.empty(), "--odometry"},
-                                      {!options.imu.empty(), "--imu"},
-                                      {!options.scan.empty(), "--scan"},
-                                      {!options.poses.empty(), "--poses"}}) {
-      if (given) {
-        throw Error(std::string(name) + ": needs metres, but " + source.name() +
-                    " has no calibration with a baseline; give one with --calib");
-      }
-    }
-  }
-  return {named(options.odometry),
-          named(options.imu),
-          named(options.poses),
-          named(options.scan),
-          named(options.map),
-          options.map_read_only,
-          start};
-}
-
-/// Results written next to the frames would be read as frames by the next run.
-void check_output(const FollowOptions& options) {
-  for (const auto& [wanted, name] :
-       {std::pair{options.frames_out, "--frames-out"}, {options.html, "--html"}}) {
-    if (wanted && options.output.empty())
-      throw Error(std::string(name) + ": needs -o DIR, the folder for output");
-  }
-  std::error_code ignored;
-  if (options.output.empty() || !fs::is_directory(options.source.source, ignored)) return;
-  const std::string from = fs::weakly_canonical(options.source.source, ignored).string() + "/";
-  const std::string into = fs::weakly_canonical(options.output, ignored).string() + "/";
-  if (into.starts_with(from)) {
-    throw Error("-o " + options.output +
-                ": is inside the source and would be read as frames, expected another folder");
-  }
-}
-
 std::string unreliable_line(const Step& step, const std::string& name) {
   return name + ": unreliable since " + std::to_string(step.reliability.weak_frames) + " frames (" +
          text_of("%.2f", double{step.reliability.value.value_or(0)}) +
@@ -237,84 +56,37 @@ std::string event_line(const LandmarkEvent& event) {
   return line;
 }
 
-/// All output of a run.
-struct Outputs {
-  std::optional<io::FollowFiles> files;
-  std::optional<io::FollowPage> page;
+/// Prints a line per frame, its events, and on a terminal the progress.
+class FollowConsole : public live::Sink {
+ public:
+  FollowConsole(std::optional<std::size_t> frames, bool prints)
+      : frames_(frames), prints_(prints), progress_(frames.value_or(0)) {}
 
-  void add_event(const std::string& event) {
-    if (files) files->add_event(event + "\n");
-    if (page) page->add_event(event);
+  void offer(const live::LiveFramePtr& frame) override {
+    const Step& step = frame->step;
+    const std::string& name = frame->pair->name;
+    progress_.clear();
+    if (prints_) std::cout << line_of(step, name) << "\n";
+    if (step.control) std::cerr << name << ": " << control_line(*step.control) << "\n";
+    if (io::becomes_unreliable(step)) std::cerr << unreliable_line(step, name) << "\n";
+    for (const LandmarkEvent& event : frame->events) {
+      if (prints_) std::cout << event_line(event) << "\n";
+    }
+    ++done_;
+    const auto all = static_cast<double>(std::max<std::size_t>(1, frames_.value_or(0)));
+    progress_.bar(frames_ ? static_cast<double>(done_) / all : 0.0,
+                  progress_words(done_, frames_, name,
+                                 std::chrono::duration<double>(live::Clock::now() - began_).count()));
   }
+  void finish() override { progress_.clear(); }
+
+ private:
+  std::optional<std::size_t> frames_;
+  bool prints_;
+  Progress progress_;
+  std::size_t done_ = 0;
+  live::Clock::time_point began_ = live::Clock::now();
 };
-
-void report(const Step& step, const Landmarked& marked, const io::SequenceFrame& frame,
-            const FollowOptions& options, Outputs& outputs, Run& run) {
-  io::Json json;
-  std::string line;
-  if (outputs.files || options.json_lines) {
-    json = io::json_of(step, frame.name, marked.tracks, frame.frame_id);
-    line = io::json_text(json) + "\n";
-  }
-  if (outputs.files) outputs.files->add(step, line);
-  if (outputs.page) {
-    outputs.page->add(io::encode_step(std::move(json), step, frame.left.gray, frame.left.rgb,
-                                      run.milliseconds.back(), marked.state.map_from_odom()));
-  }
-  if (options.frames_out) {
-    const fs::path folder = fs::path(options.output) / frame.name;
-    io::make_folder(folder);
-    const Image<Rgb> drawn = io::draw_tracks(frame.left.gray, frame.left.rgb, step);
-    io::save_png(folder / "tracks.png", drawn);
-  }
-  if (options.json_lines) {
-    std::cout << line << std::flush;
-  } else {
-    std::cout << line_of(step, frame.name) << "\n";
-  }
-  if (outputs.files) {
-    for (const io::Json& event : io::event_lines(step, marked.tracks, marked.events))
-      outputs.add_event(io::json_text(event));
-  }
-  if (step.control) std::cerr << frame.name << ": " << control_line(*step.control) << "\n";
-  if (io::becomes_unreliable(step)) std::cerr << unreliable_line(step, frame.name) << "\n";
-  for (const LandmarkEvent& event : marked.events) {
-    if (!options.json_lines) std::cout << event_line(event) << "\n";
-    run.events.push_back(event);
-  }
-}
-
-/// Processes frames until the source ends, the user stops the run, or no reader is left.
-void go_through(io::Sequence& source, io::SequenceRun& follower, const FollowOptions& options,
-                Outputs& outputs, Run& run) {
-  const Progress progress(source.size().value_or(0));
-  const auto began = Clock::now();
-  while (!is_interrupted() && std::cout) {
-    const std::optional<io::SequenceFrame> frame = source.next();
-    if (!frame) return;
-    const std::size_t done = run.milliseconds.size();
-    const auto all = static_cast<double>(std::max<std::size_t>(1, source.size().value_or(0)));
-    progress.bar(source.size() ? static_cast<double>(done) / all : 0.0,
-                 progress_words(done, source.size(), frame->name,
-                                std::chrono::duration<double>(Clock::now() - began).count()));
-    const auto start = Clock::now();
-    const Step step = follower.next(*frame);
-    run.add(step, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-    progress.clear();
-    report(step, follower.marked(), *frame, options, outputs, run);
-  }
-}
-
-/// Closes all files however the run ends, so that finished results are kept.
-void close(const std::string& state, const io::Sequence& source, io::SequenceRun& follower,
-           const FollowOptions& options, Outputs& outputs, const Run& run) {
-  if (outputs.page) outputs.page->finish(follower.marked().state.map);
-  follower.close(state == "done" || state == "ended early" ? RunState::done : RunState::aborted);
-  if (outputs.files) {
-    io::write_file(fs::path(options.output) / "summary.json",
-                   io::json_text(summary_json(run, options, source, run.config, state), 1) + "\n");
-  }
-}
 
 /// Why a run with a map has stored no landmark; empty if it has any.
 std::string no_landmark_text(const Landmarked& marked) {
@@ -328,75 +100,46 @@ std::string no_landmark_text(const Landmarked& marked) {
   return text + " (landmarks.min_frames and the like: cairn config --sequence)\n";
 }
 
-int follow(const FollowOptions& options) {
-  check_output(options);
+int follow(const RunOptions& options) {
+  check(options.files, options.source.source);
+  check(options.view);
   const Exec exec = make_exec(options.exec);
   const auto source = open_source(options.source, exec.pool);
   const FollowConfig config = resolve_follow(options.config, source->disparities(), source->ground());
-  io::SequenceRun follower(*source, options.source.source, companions(options, *source), config, exec);
-  Outputs outputs;
-  if (!options.output.empty()) outputs.files.emplace(options.output);
-  if (options.html) {
-    outputs.page.emplace(fs::path(options.output) / "follow.html",
-                         io::FollowPageHead{source->name(), source->image_size(), source->rig()});
-  }
+  const RunSinks* opened = nullptr;
+  live::LiveOptions how = live::LiveOptions::unpaced();
+  how.when_ended = RunState::aborted;
+  how.is_ended = [&] { return is_interrupted() || !std::cout || (opened && opened->is_closed()); };
+  live::Runner runner(*source, options.source.source, sensor_files(options.sensors, *source), config, how,
+                      exec);
+  FollowConsole console(source->size(), !options.json_lines);
+  RunSinks sinks(options, runner, *source, config, true, true, console);
+  opened = &sinks;
   if (!source->rig()) {
     std::cerr << "cairn: " << source->name()
               << ": no calibration with a baseline: tracks in the image only, without metres and motion\n";
   }
   const EndsBySignal ends(*source);
   catch_interrupts();
-  Run run;
-  run.config = config;
-  try {
-    go_through(*source, follower, options, outputs, run);
-  } catch (...) {
-    close("failed", *source, follower, options, outputs, run);
-    throw;
-  }
-  std::cerr << remarks_text(*source);
-  close(is_interrupted() || !std::cout  ? "interrupted"
-        : source->ended_early().empty() ? "done"
-                                        : "ended early",
-        *source, follower, options, outputs, run);
-  std::cerr << count_of(run.milliseconds.size(), "frame") << ", " << count_of(run.confirmed.size(), "track")
-            << ", " << text_of("%.2f m", run.path_m) << " of path, "
-            << text_of("%.1f ms", run.percentile(0.5)) << " a frame (p99 "
-            << text_of("%.1f", run.percentile(0.99)) << ")\n";
-  for (const LandmarkEvent& change : changes_of(run.events)) std::cerr << event_line(change) << "\n";
-  if (!options.map.empty()) std::cerr << no_landmark_text(follower.marked());
+  sinks.begin();
+  runner.run();
+  if (sinks.is_closed()) std::cout.setstate(std::ios::badbit);
+  const RunTotals& totals = sinks.totals();
+  std::cerr << remarks_text(*source) << count_of(totals.milliseconds.size(), "frame") << ", "
+            << count_of(totals.confirmed.size(), "track") << ", " << text_of("%.2f m", totals.path_m)
+            << " of path, " << text_of("%.1f ms", totals.percentile(0.5)) << " a frame (p99 "
+            << text_of("%.1f", totals.percentile(0.99)) << ")\n";
+  for (const LandmarkEvent& change : changes_of(totals.events)) std::cerr << event_line(change) << "\n";
+  if (!options.sensors.map.empty()) std::cerr << no_landmark_text(runner.marked());
+  std::cerr << sinks.summary();
   return is_interrupted() ? kInterrupted : exit_code_of(*source);
 }
 
 }  // namespace
 
 Work declare_follow(CLI::App& app) {
-  auto options = std::make_shared<FollowOptions>();
-  add_source_options(app, options->source);
-  app.add_option("--odometry", options->odometry,
-                 "wheel odometry: table of t_s, v_m_per_s, omega_rad_per_s, or poses of TUM or KITTI")
-      ->type_name("FILE");
-  app.add_option("--imu", options->imu, "gyroscope rates in the form of EuRoC")->type_name("FILE");
-  app.add_option("--poses", options->poses, "known camera poses (TUM), used instead of motion estimation")
-      ->type_name("FILE");
-  app.add_option("--scan", options->scan,
-                 "laser scans to check disparities: table of stamp, angle_min, angle_increment, r0, ...")
-      ->type_name("FILE");
-  app.add_option("--map", options->map, "map of landmarks to use and extend; created if absent")
-      ->type_name("FILE.db");
-  app.add_flag("--read-only", options->map_read_only, "no changes to the map");
-  app.add_option("--start", options->start,
-                 "start pose in the map, m and degrees counter-clockwise; default: found by landmarks")
-      ->type_name("X,Y,DEG");
-  add_config_options(app, options->config);
-  add_exec_options(app, options->exec);
-  app.add_option("-o,--output", options->output,
-                 "output folder for tracks.jsonl, poses.tum, tracks.mots.txt, events.jsonl, summary.json")
-      ->type_name("DIR");
-  app.add_flag("--frames-out", options->frames_out, "one folder per frame, with tracks.png");
-  app.add_flag("--html", options->html, "follow.html in DIR: a page for the browser that plays the run");
-  app.add_flag("--json-lines", options->json_lines,
-               "lines of tracks.jsonl on standard output instead of a summary");
+  auto options = std::make_shared<RunOptions>();
+  add_run_options(app, *options);
   return [options] { return follow(*options); };
 }
 

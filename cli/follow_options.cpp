@@ -2,9 +2,87 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "follow_options.hpp"
 
+#include <cairn/core/error.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
 #include <set>
 
+#include "source_options.hpp"
+
 namespace cairn::cli {
+namespace {
+
+/// "X,Y,DEGREES" on the map's floor.
+std::optional<Pose> start_in_map(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  double x = 0;
+  double y = 0;
+  double degrees = 0;
+  int used = 0;
+  const int read = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &x, &y, &degrees, &used);
+  if (read != 3 || static_cast<std::size_t>(used) != text.size() || !std::isfinite(x + y + degrees))
+    throw Error("--start " + text + ": expected X,Y,DEGREES, e.g. 0,0,0 for where the map began");
+  Pose pose = rotation_about({0, 0, degrees * std::numbers::pi / 180});
+  pose.translation_m = {x, y, 0};
+  return pose;
+}
+
+}  // namespace
+
+std::vector<std::string> SensorInput::given() const {
+  std::vector<std::string> names;
+  for (const auto& [file, name] : {std::pair{&map, "--map"},
+                                   {&odometry, "--odometry"},
+                                   {&imu, "--imu"},
+                                   {&scan, "--scan"},
+                                   {&poses, "--poses"}}) {
+    if (!file->empty()) names.emplace_back(name);
+  }
+  return names;
+}
+
+void add_sensor_options(CLI::App& app, SensorInput& input) {
+  app.add_option("--odometry", input.odometry,
+                 "wheel odometry: table of t_s, v_m_per_s, omega_rad_per_s, or poses of TUM or KITTI")
+      ->type_name("FILE");
+  app.add_option("--imu", input.imu, "gyroscope rates in the form of EuRoC")->type_name("FILE");
+  app.add_option("--poses", input.poses, "known camera poses (TUM), used instead of motion estimation")
+      ->type_name("FILE");
+  app.add_option("--scan", input.scan,
+                 "laser scans to check disparities: table of stamp, angle_min, angle_increment, r0, ...")
+      ->type_name("FILE");
+  app.add_option("--map", input.map, "map of landmarks to use and extend; created if absent")
+      ->type_name("FILE.db");
+  app.add_flag("--read-only", input.map_read_only, "no changes to the map");
+  app.add_option("--start", input.start,
+                 "start pose in the map, m and degrees counter-clockwise; default: found by landmarks")
+      ->type_name("X,Y,DEG");
+}
+
+io::CompanionFiles sensor_files(const SensorInput& input, const io::Sequence& source) {
+  refuse_two_priors(input.odometry, input.imu);
+  if (!input.poses.empty() && !(input.odometry.empty() && input.imu.empty()))
+    throw Error("--poses: already gives the motion, expected neither --odometry nor --imu");
+  if (input.map_read_only && input.map.empty()) throw Error("--read-only: needs --map FILE.db");
+  const std::optional<Pose> start = start_in_map(input.start);
+  if (start && input.map.empty()) throw Error("--start: needs --map FILE.db");
+  if (const auto names = input.given(); !source.rig() && !names.empty()) {
+    throw Error(names.front() + ": needs metres, but " + source.name() +
+                " has no calibration with a baseline; give one with --calib");
+  }
+  const auto named = [](const std::string& file) {
+    return file.empty() ? std::nullopt : std::optional<std::filesystem::path>(file);
+  };
+  return {named(input.odometry),
+          named(input.imu),
+          named(input.poses),
+          named(input.scan),
+          named(input.map),
+          input.map_read_only,
+          start};
+}
 
 FollowConfig resolve_follow(const ConfigOptions& options, std::optional<int> calibrated_disparities,
                             KnownGround ground) {

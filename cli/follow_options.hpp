@@ -2,8 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <CLI/CLI.hpp>
+#include <cairn/live/sequence_run.hpp>
 #include <cairn/sequence/follow_config.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common.hpp"
 
@@ -13,6 +17,23 @@ namespace cairn::cli {
 FollowConfig resolve_follow(const ConfigOptions& options,
                             std::optional<int> calibrated_disparities = std::nullopt,
                             KnownGround ground = {});
+/// Files of other sensors, and the map.
+struct SensorInput {
+  std::string odometry;
+  std::string imu;
+  std::string poses;
+  std::string scan;
+  std::string map;
+  bool map_read_only = false;
+  std::string start;
+
+  /// The given ones that need metres: option names.
+  [[nodiscard]] std::vector<std::string> given() const;
+};
+void add_sensor_options(CLI::App& app, SensorInput& input);
+/// Throws Error for options that exclude each other, or do not suit the source.
+io::CompanionFiles sensor_files(const SensorInput& input, const io::Sequence& source);
+
 /// The base preset.
 std::string preset_of(const ConfigOptions& options);
 /// What the search for better options found, in words.

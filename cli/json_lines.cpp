@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <string_view>
 
 #include "interrupt.hpp"
@@ -15,23 +14,19 @@
 namespace cairn::cli {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr std::size_t kMostWaiting = 16;  // frames
 constexpr int kNotice_ms = 50;
 /// poll() guarantees that a writable pipe takes this much without blocking (POSIX: PIPE_BUF is at least 512;
 /// Linux: 4096).
 constexpr std::size_t kPiece = 4096;
 
-/// False if the reader closed the pipe, or does not read and `is_over`.
-template <class IsOver>
-bool write_to_stdout(std::string_view text, IsOver&& is_over) {
+/// False if the reader closed the pipe, or does not read and the run is interrupted.
+bool write_to_stdout(std::string_view text) {
   while (!text.empty()) {
     pollfd out{STDOUT_FILENO, POLLOUT, 0};
     const int ready = ::poll(&out, 1, kNotice_ms);
     if (ready < 0 && errno != EINTR) return false;
     if (ready <= 0) {
-      if (is_over()) return false;
+      if (is_interrupted()) return false;
       continue;
     }
     const ssize_t written = ::write(STDOUT_FILENO, text.data(), std::min(text.size(), kPiece));
@@ -43,45 +38,8 @@ bool write_to_stdout(std::string_view text, IsOver&& is_over) {
 
 }  // namespace
 
-JsonLines::JsonLines(live::MessageForm form, bool waits)
-    : form_(std::move(form)), waits_(waits), thread_([this] { work(); }) {}
-
-JsonLines::~JsonLines() {
-  finish();
-}
-
 void JsonLines::offer(const live::LiveFramePtr& frame) {
-  std::unique_lock lock(mutex_);
-  while (waits_ && queue_.size() >= kMostWaiting && !is_closed_ && !is_interrupted())
-    changed_.wait_for(lock, std::chrono::milliseconds(kNotice_ms));
-  if (is_closed_) return;
-  if (queue_.size() >= kMostWaiting) {
-    ++skipped_;
-    return;
-  }
-  queue_.push_back(frame);
-  changed_.notify_all();
-}
-
-void JsonLines::finish() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_finishing_ = true;
-  }
-  changed_.notify_all();
-  if (thread_.joinable()) thread_.join();
-}
-
-std::string JsonLines::summary() const {
-  const std::lock_guard lock(mutex_);
-  return skipped_ == 0
-             ? ""
-             : "stdout: " + std::to_string(skipped_) + " lines dropped, because they were read too slowly";
-}
-
-bool JsonLines::is_closed() const {
-  const std::lock_guard lock(mutex_);
-  return is_closed_;
+  if (!is_closed_) is_closed_ = !write_to_stdout(line_of(*frame));
 }
 
 std::string JsonLines::line_of(const live::LiveFrame& frame) const {
@@ -91,28 +49,6 @@ std::string JsonLines::line_of(const live::LiveFrame& frame) const {
   if (!pair.frame_id.empty()) line["frame_id"] = pair.frame_id;
   line.update(*results_of(frame, form_));
   return io::json_text(line) + "\n";
-}
-
-void JsonLines::work() {
-  std::unique_lock lock(mutex_);
-  while (true) {
-    changed_.wait(lock, [&] { return !queue_.empty() || is_finishing_; });
-    if (queue_.empty()) return;
-    const live::LiveFramePtr frame = std::move(queue_.front());
-    queue_.pop_front();
-    lock.unlock();
-    changed_.notify_all();
-    const bool is_written = write_to_stdout(line_of(*frame), [&] {
-      const std::lock_guard finishing(mutex_);
-      return is_finishing_ && is_interrupted();
-    });
-    lock.lock();
-    if (!is_written) {
-      is_closed_ = true;
-      queue_.clear();
-      return;
-    }
-  }
 }
 
 }  // namespace cairn::cli

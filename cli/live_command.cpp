@@ -7,25 +7,15 @@
 
 #include "commands.hpp"
 #include "common.hpp"
-#include "follow_options.hpp"
 #include "interrupt.hpp"
-#include "json_lines.hpp"
-#include "live_record.hpp"
-#include "live_ros2.hpp"
-#include "live_view.hpp"
-#include "source_options.hpp"
+#include "run_sinks.hpp"
 
 namespace cairn::cli {
 namespace {
 
 struct LiveCommandOptions {
-  SourceInput source;
-  std::string map;
-  bool map_read_only = false;
-  ConfigOptions config;
+  RunOptions run;
   bool has_config_option = false;  // --preset or --config was given
-  LiveRecordOptions record;
-  ExecOptions exec;
   bool every_frame = false;
   bool no_tracks = false;
   double max_age_ms = 200;
@@ -34,9 +24,6 @@ struct LiveCommandOptions {
   bool has_pace = false;  // --pace was given
   double duration_s = 0;
   bool loop = false;
-  bool json_lines = false;
-  ViewInput view;
-  Ros2CommandOptions ros2;
 };
 
 /// Prints to stderr: findings of the search for better options and, if it is a terminal, a status line per
@@ -76,9 +63,11 @@ void check(const LiveCommandOptions& options) {
     refuse("--pace", options.pace, "0 ... 1000 times as fast (0: as fast as it goes)");
   if (!(options.duration_s >= 0 && options.duration_s <= 1e9))
     refuse("--duration", options.duration_s, "s, 0 ... 1e9 (0: until the source ends)");
-  if (options.no_tracks && !options.map.empty())
-    throw Error("--map: found --no-tracks as well, but landmarks need tracks");
-  if (options.map_read_only && options.map.empty()) throw Error("--read-only: needs --map FILE.db");
+  if (!options.no_tracks) return;
+  const std::vector<std::string> needing = options.run.sensors.given();
+  if (!needing.empty()) throw Error(needing.front() + ": found --no-tracks as well, but it needs tracks");
+  if (!options.run.files.output.empty())
+    throw Error("-o: found --no-tracks as well, but its files hold tracks");
 }
 
 std::string summary_text(const live::LiveSummary& summary) {
@@ -99,69 +88,46 @@ std::string summary_text(const live::LiveSummary& summary) {
 
 int live_command(LiveCommandOptions options) {
   check(options);
-  const RecordedConfig recorded(options.source.source, options.config, options.has_config_option);
-  check(options.view);
-  const Exec exec = make_exec(options.exec);
-  const auto open = [&] { return open_source(options.source, exec.pool); };
+  RunOptions& run = options.run;
+  check(run.files, run.source.source);
+  const RecordedConfig recorded(run.source.source, run.config, options.has_config_option);
+  check(run.view);
+  const Exec exec = make_exec(run.exec);
+  const auto open = [&] { return open_source(run.source, exec.pool); };
   const std::unique_ptr<io::Sequence> source = options.loop ? live::looped(open) : open();
   if (options.has_pace && source->status().is_live)
     throw Error("--pace: is for files, " + source->name() + " is a camera, which sets its own");
   const FollowConfig config = [&] {
     try {
-      return resolve_follow(options.config, source->disparities(), source->ground());
+      return resolve_follow(run.config, source->disparities(), source->ground());
     } catch (const Error& error) {
       throw Error(recorded.named(error.what()));
     }
   }();
   std::cerr << recorded.notice();
-  io::CompanionFiles files;
-  if (!options.map.empty()) files.map = options.map;
-  files.is_map_read_only = options.map_read_only;
-  std::unique_ptr<JsonLines> lines;
-  if (options.json_lines) {
-    lines = std::make_unique<JsonLines>(
-        live::MessageForm{
-            .rig = source->rig(), .preset = preset_of(options.config), .tracks = !options.no_tracks},
-        options.every_frame);
-  }
+  const RunSinks* opened = nullptr;
   live::LiveOptions how;
   how.every_frame = options.every_frame;
   if (options.max_age_ms > 0) {
     how.max_age = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double, std::milli>(options.max_age_ms));
   }
-  how.is_ended = [&lines] { return is_interrupted() || (lines && lines->is_closed()); };
+  how.is_ended = [&opened] { return is_interrupted() || (opened != nullptr && opened->is_closed()); };
   how.tracks = !options.no_tracks;
   how.pace = options.pace;
   if (options.duration_s > 0) {
     how.duration = std::chrono::duration_cast<std::chrono::nanoseconds>(
         std::chrono::duration<double>(options.duration_s));
   }
-  live::Runner runner(*source, options.source.source, files, config, how, exec);
-
-  const auto recorder = open_recorder(
-      options.record,
-      live::recorded_run(*source, options.source.source, preset_of(options.config), !options.no_tracks),
-      options.every_frame);
-  runner.add(*recorder);
-  std::vector<std::unique_ptr<live::Sink>> sinks;
-  sinks.push_back(std::make_unique<StatusLine>());
-  if (lines) runner.add(*lines);
-  if (auto view = make_view(options.view, runner, *recorder, *source, preset_of(options.config)))
-    sinks.push_back(std::move(view));
-  if (auto sink = make_ros2_sink(options.ros2, *source)) sinks.push_back(std::move(sink));
-  for (const auto& sink : sinks) runner.add(*sink);
-
+  live::Runner runner(*source, run.source.source, sensor_files(run.sensors, *source), config, how, exec);
+  StatusLine console;
+  RunSinks sinks(run, runner, *source, config, how.tracks, how.every_frame, console);
+  opened = &sinks;
   const EndsBySignal ends(*source);
   catch_interrupts();
-  begin_recording(options.record, *recorder);
+  sinks.begin();
   const live::LiveSummary summary = runner.run();
-  std::cerr << remarks_text(*source) << summary_text(summary);
-  if (lines && !lines->summary().empty()) std::cerr << lines->summary() << "\n";
-  if (const std::string line = recorder->summary(); !line.empty()) std::cerr << line << "\n";
-  for (const auto& sink : sinks) {
-    if (const std::string line = sink->summary(); !line.empty()) std::cerr << line << "\n";
-  }
+  std::cerr << remarks_text(*source) << summary_text(summary) << sinks.summary();
   return exit_code_of(*source);
 }
 
@@ -169,9 +135,7 @@ int live_command(LiveCommandOptions options) {
 
 Work declare_live(CLI::App& app) {
   auto options = std::make_shared<LiveCommandOptions>();
-  add_source_options(app, options->source);
-  app.add_option("--map", options->map, "map of landmarks to use and extend")->type_name("FILE.db");
-  app.add_flag("--read-only", options->map_read_only, "no changes to the map");
+  add_run_options(app, options->run);
   app.add_flag("--no-tracks", options->no_tracks, "single frames without tracking, as in cairn segment");
   app.add_flag("--every-frame", options->every_frame,
                "processing of every frame; default: a newer pair replaces a waiting one");
@@ -186,12 +150,6 @@ Work declare_live(CLI::App& app) {
   app.add_option("--duration", options->duration_s, "duration of the run; 0: until the source ends")
       ->type_name("S")
       ->capture_default_str();
-  add_config_options(app, options->config);
-  add_exec_options(app, options->exec);
-  app.add_flag("--json-lines", options->json_lines, "one line of JSON per frame on standard output");
-  add_record_options(app, options->record);
-  add_view_options(app, options->view);
-  add_ros2_options(app, options->ros2);
   return [options, &app] {
     options->has_max_age = app.count("--max-age") > 0;
     options->has_pace = app.count("--pace") > 0;

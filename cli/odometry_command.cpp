@@ -4,12 +4,11 @@
 #include <cairn/core/error.hpp>
 #include <cairn/input/camera/without_password.hpp>
 #include <cairn/io/atomic_file.hpp>
-#include <cairn/live/sequence_run.hpp>
+#include <cairn/live/runner.hpp>
 #include <cairn/output/trajectory_files.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/sequence/first_pose.hpp>
 #include <cairn/sequence/odometry.hpp>
-#include <chrono>
 #include <iostream>
 #include <map>
 
@@ -21,8 +20,6 @@
 
 namespace cairn::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct OdometryOptions {
   SourceInput input;
@@ -62,17 +59,79 @@ struct Run {
 };
 
 /// Adds the frame's pose; returns whether the format has a line for it.
-bool add(Run& run, const OdometryStep& step, Stamp stamp, bool keep_lost) {
+bool add(Run& run, const Step& step, bool keep_lost) {
   if (step.motion.is_new_keyframe) ++run.keyframes;
   if (step.motion.refusal != MotionRefusal::none)
     ++run.refusals[choice_name(step.motion.refusal, kMotionRefusals)];
-  if (step.state.lost) ++run.lost;
-  if (!step.state.lost && run.frames > 0) run.path_m += length(step.motion.now_from_before.translation_m);
+  if (step.is_lost) ++run.lost;
+  if (!step.is_lost && run.frames > 0) run.path_m += length(step.motion.now_from_before.translation_m);
   ++run.frames;
-  if (step.state.lost && !keep_lost) return false;
-  run.poses.push_back({stamp, step.state.map_from_camera});
+  if (step.is_lost && !keep_lost) return false;
+  run.poses.push_back({step.stamp, step.map_from_camera});
   return true;
 }
+
+/// The camera's motion without objects.
+class CameraMotion {
+ public:
+  CameraMotion(const StereoRig& rig, const io::MotionPriors* priors, Run& run)
+      : rig_(rig), priors_(priors), run_(run) {}
+
+  Step next(const io::SequenceFrame& frame, const FollowConfig& config, const Exec& exec) {
+    const StereoResult scene = estimate_disparity(
+        StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), rig_, config.segmentation, exec);
+    const auto start = live::Clock::now();
+    if (!before_) {
+      const Pose first = first_pose(scene.ground, rig_);
+      from_level_ = camera_from_level(first);
+      state_ = begin_odometry(first);
+    }
+    std::optional<MotionPrior> prior;
+    if (priors_ != nullptr && before_) prior = priors_->between(*before_, frame.stamp, from_level_);
+    if (prior) ++run_.with_prior;
+    if (frame.after_gap) state_ = after_gap(std::move(state_));
+    OdometryStep moved = advance_odometry(state_, frame.left.gray, scene.disparity, scene.confidence, {},
+                                          rig_, prior, config.odometry);
+    run_.milliseconds.push_back(live::ms_between(start, live::Clock::now()));
+    state_ = std::move(moved.state);
+    before_ = frame.stamp;
+    Step step;
+    step.stamp = frame.stamp;
+    step.motion = moved.motion;
+    step.map_from_camera = state_.map_from_camera;
+    step.is_lost = state_.lost;
+    return step;
+  }
+
+ private:
+  StereoRig rig_;
+  const io::MotionPriors* priors_;
+  Run& run_;
+  OdometryState state_;
+  Pose from_level_;
+  std::optional<Stamp> before_;
+};
+
+/// Prints the poses, or keeps them for the file.
+class Poses : public live::Sink {
+ public:
+  Poses(io::TrajectoryForm form, bool prints, std::optional<std::size_t> frames, Run& run)
+      : form_(form), prints_(prints), run_(run), progress_(frames.value_or(2)) {}
+  void offer(const live::LiveFramePtr& frame) override {
+    progress_.at(run_.frames, frame->pair->name);
+    if (!add(run_, frame->step, form_ == io::TrajectoryForm::kitti) || !prints_) return;
+    progress_.clear();
+    std::cout << io::trajectory_text({run_.poses.back()}, form_) << std::flush;
+    run_.poses.clear();
+  }
+  void finish() override { progress_.clear(); }
+
+ private:
+  io::TrajectoryForm form_;
+  bool prints_;
+  Run& run_;
+  Progress progress_;
+};
 
 std::string summary(const Run& run, const io::MotionPriors* priors) {
   std::string all = std::to_string(run.frames) + (run.frames == 1 ? " frame, " : " frames, ") +
@@ -108,43 +167,19 @@ int estimate(const OdometryOptions& options) {
     throw Error(io::without_password(options.input.source) +
                 ": has no calibration, expected --calib (poses are in metres)");
   }
-  const StereoRig rig = *source->rig();
   const std::unique_ptr<io::MotionPriors> priors = load_priors(options, *source);
-
   Run run;
-  OdometryState state;
-  Pose from_level;
-  std::optional<Stamp> before;
-  const Progress progress(source->size().value_or(2));
+  CameraMotion motion(*source->rig(), priors.get(), run);
+  live::LiveOptions how = live::LiveOptions::unpaced();
+  how.is_ended = [] { return is_interrupted() || !std::cout; };
+  how.step = [&motion](const auto& frame, const auto& used, const auto& by) {
+    return motion.next(frame, used, by);
+  };
+  live::Runner runner(*source, options.input.source, {}, config, how, exec);
+  Poses poses(form, options.output.empty(), source->size(), run);
+  runner.add(poses);
   catch_interrupts();
-  while (!is_interrupted() && std::cout) {
-    const std::optional<io::SequenceFrame> frame = source->next();
-    if (!frame) break;
-    progress.at(run.frames, frame->name);
-    const StereoResult scene = estimate_disparity(
-        StereoPair::from(frame->left.gray, frame->right, frame->left.rgb), rig, config.segmentation, exec);
-    const auto start = Clock::now();
-    if (!before) {
-      const Pose first = first_pose(scene.ground, rig);
-      from_level = camera_from_level(first);
-      state = begin_odometry(first);
-    }
-    std::optional<MotionPrior> prior;
-    if (priors && before) prior = priors->between(*before, frame->stamp, from_level);
-    if (prior) ++run.with_prior;
-    if (frame->after_gap) state = after_gap(std::move(state));
-    const OdometryStep step = advance_odometry(state, frame->left.gray, scene.disparity, scene.confidence, {},
-                                               rig, prior, config.odometry);
-    run.milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-    if (add(run, step, frame->stamp, form == io::TrajectoryForm::kitti) && options.output.empty()) {
-      progress.clear();
-      std::cout << io::trajectory_text({run.poses.back()}, form) << std::flush;
-      run.poses.clear();
-    }
-    state = step.state;
-    before = frame->stamp;
-  }
-  progress.clear();
+  runner.run();
   if (!options.output.empty()) io::write_file(options.output, io::trajectory_text(run.poses, form));
   std::cerr << remarks_text(*source) << summary(run, priors.get());
   return is_interrupted() ? kInterrupted : exit_code_of(*source);

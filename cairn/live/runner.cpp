@@ -48,11 +48,10 @@ bool Runner::is_over() const {
 LiveSummary Runner::run() {
   const Clock::time_point began = Clock::now();
   if (options_.duration) deadline_ = began + *options_.duration;
-  const bool drops = !options_.every_frame;
   NewestSlot<PairPtr> slot;
   std::exception_ptr trouble;
   std::thread reader;
-  if (drops) {
+  if (!options_.every_frame) {
     reader = std::thread([&] {
       try {
         read_source(slot);
@@ -62,50 +61,72 @@ LiveSummary Runner::run() {
       slot.close();
     });
   }
-  const auto end = [&](RunState state) {
+  const auto end = [&] {
     is_stopped_ = true;
     source_.stop();
     if (reader.joinable()) reader.join();
-    for (Sink* sink : sinks_) sink->finish();
-    follow_.close(trouble ? RunState::aborted : state);
+    has_failed_ = has_failed_ || trouble;
+    was_ended_ = options_.is_ended && options_.is_ended();
+    std::exception_ptr unfinished;
+    for (Sink* sink : sinks_) {
+      try {
+        sink->finish();
+      } catch (...) {
+        if (!unfinished) unfinished = std::current_exception();
+        has_failed_ = true;
+      }
+    }
+    follow_.close(has_failed_ ? RunState::aborted : was_ended_ ? options_.when_ended : RunState::done);
+    if (unfinished) std::rethrow_exception(unfinished);
   };
-  bool is_after_gap = false;
+  const auto offer = [&](const LiveFramePtr& frame) {
+    for (Sink* sink : sinks_) sink->offer(frame);
+  };
   try {
-    while (!is_over()) {
-      PairPtr pair;
-      if (drops) {
-        pair = slot.take(kNotice).value_or(nullptr);
-        if (!pair && slot.is_closed()) break;
-        drops_.replaced = slot.replaced();
-      } else {
-        auto next = source_.next();
-        if (!next) break;
-        wait_for_its_time(*next);
-        pair = std::make_shared<io::SequenceFrame>(std::move(*next));
-      }
-      if (!pair) continue;
-      if (drops && options_.max_age && pair->arrived && Clock::now() - *pair->arrived > *options_.max_age) {
-        ++drops_.too_old;
-        is_after_gap = is_after_gap || pair->after_gap;
-        continue;
-      }
-      pair->after_gap = pair->after_gap || std::exchange(is_after_gap, false);
-      const LiveFramePtr frame = work(std::move(pair));
-      for (Sink* sink : sinks_) sink->offer(frame);
+    if (options_.every_frame) {
+      while (const LiveFramePtr frame = next()) offer(frame);
+    } else {
+      while (PairPtr pair = newest(slot)) offer(work(std::move(pair)));
     }
   } catch (...) {
     const std::exception_ptr first = std::current_exception();
+    has_failed_ = true;
     try {
-      end(RunState::aborted);
+      end();
     } catch (const Error&) {  // the first error is more informative
     }
     std::rethrow_exception(first);
   }
-  end(RunState::done);
+  end();
   if (trouble) std::rethrow_exception(trouble);
   const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
   return {latencies_.count(), drops_, seconds, latencies_.percentile(0.5), latencies_.percentile(0.99),
           latencies_.max_ms()};
+}
+
+std::shared_ptr<LiveFrame> Runner::next() {
+  if (is_over()) return nullptr;
+  auto pair = source_.next();
+  if (!pair) return nullptr;
+  wait_for_its_time(*pair);
+  return work(std::make_shared<io::SequenceFrame>(std::move(*pair)));
+}
+
+/// The newest pair that is not too old; null at the end.
+Runner::PairPtr Runner::newest(NewestSlot<PairPtr>& slot) {
+  while (!is_over()) {
+    const PairPtr pair = slot.take(kNotice).value_or(nullptr);
+    if (!pair && slot.is_closed()) return nullptr;
+    drops_.replaced = slot.replaced();
+    if (!pair) continue;
+    if (!options_.max_age || !pair->arrived || Clock::now() - *pair->arrived <= *options_.max_age) {
+      pair->after_gap = pair->after_gap || std::exchange(is_after_gap_, false);
+      return pair;
+    }
+    ++drops_.too_old;
+    is_after_gap_ = is_after_gap_ || pair->after_gap;
+  }
+  return nullptr;
 }
 
 /// On its own thread, so that the source never waits.
@@ -146,24 +167,28 @@ void Runner::wait_for_its_time(const io::SequenceFrame& pair) {
   played_ = {pair.stamp, due};
 }
 
-LiveFramePtr Runner::work(PairPtr pair) {
+Step Runner::step_of(const io::SequenceFrame& pair) {
+  if (options_.step) return options_.step(pair, *used_config_, exec_);
+  if (options_.tracks) return follow_.next(pair);
+  Step step;
+  step.index = frames_;
+  step.stamp = pair.stamp;
+  step.is_lost = true;
+  step.frame = segment(StereoPair::from(pair.left.gray, pair.right, pair.left.rgb), source_.rig(),
+                       used_config_->segmentation, exec_);
+  return step;
+}
+
+std::shared_ptr<LiveFrame> Runner::work(PairPtr pair) {
   take_config();
   auto frame = std::make_shared<LiveFrame>();
   frame->started = Clock::now();
   stages_.clear();
-  if (options_.tracks) {
-    frame->step = follow_.next(*pair);
-    frame->landmarks = follow_.marked().tracks;
-    frame->events = follow_.marked().events;
-    frame->map_from_odom = follow_.marked().state.map_from_odom();
-    take_over(frame->step.control);
-  } else {
-    frame->step.index = frames_;
-    frame->step.stamp = pair->stamp;
-    frame->step.is_lost = true;
-    frame->step.frame = segment(StereoPair::from(pair->left.gray, pair->right, pair->left.rgb), source_.rig(),
-                                used_config_->segmentation, exec_);
-  }
+  frame->step = step_of(*pair);
+  frame->landmarks = follow_.marked().tracks;
+  frame->events = follow_.marked().events;
+  frame->map_from_odom = follow_.marked().state.map_from_odom();
+  take_over(frame->step.control);
   ++frames_;
   frame->arrived = pair->arrived.value_or(frame->started);
   frame->pair = std::move(pair);

@@ -22,11 +22,22 @@ struct LiveOptions {
   // Pairs older than this before processing are dropped; nullopt: never. Not with every_frame.
   std::optional<std::chrono::milliseconds> max_age;
   bool tracks = true;  // false: single frames, as by segment()
+  // Instead of both: another way to process a pair, e.g. odometry alone.
+  std::function<Step(const io::SequenceFrame&, const FollowConfig&, const Exec&)> step;
   // Playback speed of files relative to their stamps; 0 = as fast as possible.
   double pace = 1;
   std::optional<std::chrono::nanoseconds> duration;
   // Called before each frame and often while waiting for one, by two threads at once: true ends the run.
   std::function<bool()> is_ended;
+  RunState when_ended = RunState::done;  // state in the map of a run that is_ended has ended
+
+  /// Every frame, as fast as possible.
+  static LiveOptions unpaced() {
+    LiveOptions options;
+    options.every_frame = true;
+    options.pace = 0;
+    return options;
+  }
 };
 
 /// The summary of a run.
@@ -39,7 +50,8 @@ struct LiveSummary {
   double max_ms = 0;
 };
 
-/// Reads pairs from a source, processes and follows them, and offers the frames to the sinks.
+/// The frame loop of all commands on sequences: reads pairs from a source, processes and follows them, and offers
+/// the frames to the sinks; or gives them one by one with next().
 class Runner {
  public:
   /// `source` and the sinks must outlive it. Throws Error like SequenceRun.
@@ -49,6 +61,17 @@ class Runner {
 
   /// Runs until the source ends, the duration is over, or stop(). Throws Error for a frame that does not fit.
   LiveSummary run();
+  /// Instead of run(), without sinks, for LiveOptions::every_frame: the next frame; null at the end. Throws Error
+  /// like run().
+  std::shared_ptr<LiveFrame> next();
+  /// After the last next(): ends the run in the map. No effect the second time.
+  void close(RunState state) { follow_.close(state); }
+
+  /// For sinks in finish(): whether an error has ended the run, or LiveOptions::is_ended.
+  [[nodiscard]] bool has_failed() const { return has_failed_; }
+  [[nodiscard]] bool was_ended() const { return was_ended_; }
+  /// The landmarks after the last frame; by the thread of run().
+  [[nodiscard]] const Landmarked& marked() const { return follow_.marked(); }
 
   // From any thread:
 
@@ -76,7 +99,9 @@ class Runner {
   [[nodiscard]] bool is_over() const;
   void read_source(NewestSlot<PairPtr>& slot);
   void wait_for_its_time(const io::SequenceFrame& pair);
-  LiveFramePtr work(PairPtr pair);
+  PairPtr newest(NewestSlot<PairPtr>& slot);
+  Step step_of(const io::SequenceFrame& pair);
+  std::shared_ptr<LiveFrame> work(PairPtr pair);
   void take_config();
   void take_over(const std::optional<ControlEvent>& control);
 
@@ -101,6 +126,9 @@ class Runner {
   std::optional<std::pair<Stamp, Clock::time_point>>
       played_;  // the previous frame of the file, and when it was due
   Drops drops_;
+  bool is_after_gap_ = false;  // a pair after a gap was dropped
+  bool has_failed_ = false;
+  bool was_ended_ = false;
   int frames_ = 0;
   std::deque<Clock::time_point> recent_;
   Latencies latencies_;

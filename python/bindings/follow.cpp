@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <cairn/live/sequence_run.hpp>
+#include <cairn/live/runner.hpp>
 #include <cairn/output/follow_files.hpp>
 #include <map>
 #include <mutex>
@@ -185,27 +185,32 @@ class Following {
                   "in metres; give one with calib");
     }
     run_.emplace(*source_, source, files,
-                 settings_.suited({source_->rig(), {}, source_->disparities(), source_->ground()}), exec);
+                 settings_.suited({source_->rig(), {}, source_->disparities(), source_->ground()}),
+                 live::LiveOptions::unpaced(), exec);
   }
 
   std::optional<FollowedFrame> next() {
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
     if (closed_) return std::nullopt;
-    std::optional<io::SequenceFrame> frame = source_->next();
-    if (!frame) {
+    const std::shared_ptr<live::LiveFrame> found = run_->next();
+    if (!found) {
       close_run(RunState::done);
       return std::nullopt;
     }
-    const Config used = run_->config().segmentation;
-    const Landmarked& marked = run_->marked();
-    FollowedFrame made{{}, run_->next(*frame), {}, frame->name, frame->frame_id, marked.tracks, {}, {}};
-    for (const LandmarkOfTrack& of : marked.tracks) {
+    const io::SequenceFrame& pair = *found->pair;
+    FollowedFrame made{{pair.left.gray.clone(), pair.left.rgb.clone()},
+                       std::move(found->step),
+                       provenance(settings_, found->config->segmentation, source_->rig(), pair.stamp),
+                       pair.name,
+                       pair.frame_id,
+                       std::move(found->landmarks),
+                       {},
+                       {}};
+    for (const LandmarkOfTrack& of : made.marks) {
       if (of.landmark != LandmarkId::none) made.landmarks[number(of.track)] = number(of.landmark);
     }
-    for (const LandmarkEvent& event : marked.events)
+    for (const LandmarkEvent& event : found->events)
       made.events.emplace_back(choice_name(event.kind, kLandmarkEventKinds), number(event.landmark));
-    made.left = std::move(frame->left);
-    made.how = provenance(settings_, used, source_->rig(), made.step.stamp);
     return made;
   }
 
@@ -223,7 +228,7 @@ class Following {
 
   FollowSettings settings_;
   std::unique_ptr<io::Sequence> source_;
-  std::optional<io::SequenceRun> run_;
+  std::optional<live::Runner> run_;
   std::mutex busy_;
   bool closed_ = false;
 };

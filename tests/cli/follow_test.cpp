@@ -76,6 +76,34 @@ TEST_F(Follow, PrintsTheLinesThatItWrites) {
   EXPECT_EQ(outcome.out, content(at("out/tracks.jsonl")));
 }
 
+TEST_F(Follow, LiveWritesTheSameFiles) {
+  standing(4);
+  write(at("wheels.csv"), "frame,t_s,v_m_per_s,omega_rad_per_s\n0,0,0,0\n1,0.1,0,0\n2,0.2,0,0\n3,0.3,0,0\n");
+  const std::vector<std::string> same{path("in"), "--odometry", path("wheels.csv"), "--html", "-o"};
+  const auto command = [&](std::vector<std::string> words, const std::string& out,
+                           const std::vector<std::string>& more) {
+    words.insert(words.end(), same.begin(), same.end());
+    words.push_back(out);
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  };
+  command({"follow"}, path("a"), {});
+  command({"live"}, path("b"), {"--every-frame", "--pace", "0"});
+  command({"live"}, path("c"), {"--pace", "0.3"});  // slowly enough that no pair is replaced
+  for (const std::string folder : {"b", "c"}) {
+    for (const char* file : {"tracks.jsonl", "poses.tum", "tracks.mots.txt", "events.jsonl"})
+      EXPECT_EQ(content(at(folder + "/" + file)), content(at(std::string("a/") + file))) << folder << file;
+    const Json summary = Json::parse(content(at(folder + "/summary.json")));
+    EXPECT_EQ(summary["state"], "done");
+    EXPECT_EQ(summary["frames"], 4);
+    EXPECT_TRUE(fs::exists(at(folder + "/follow.html")));
+  }
+  for (const auto& [option, file] : {std::pair{"--map", "room.db"}, {"--poses", "p.tum"}, {"-o", "d"}})
+    refuses({"live", path("in"), "--no-tracks", option, path(file)}, {option, "--no-tracks"});
+  refuses({"live", path("in"), "-o", path("in/results")}, {"-o", "inside the source"});
+}
+
 TEST_F(Follow, GivesTheSameForAnyNumberOfThreadsAndInstructionSet) {
   standing(3);
   const std::string one = run({"follow", path("in"), "--json-lines", "--threads", "1"}).out;

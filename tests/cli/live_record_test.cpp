@@ -74,6 +74,15 @@ TEST_F(LiveRecord, ReplayGivesTheTracksOfTheOriginal) {
   EXPECT_EQ(lines_of(run({"follow", path("folder"), "--json-lines"}).out), lines_of(original));
 }
 
+TEST_F(LiveRecord, FollowRecordsTheSame) {
+  const Outcome followed = run({"follow", sequence(), "--record", path("run.mcap"), "-o", path("out")});
+  ASSERT_EQ(followed.code, 0) << followed.err;
+  EXPECT_NE(followed.err.find("recorded " + path("run.mcap") + ": 6 frames"), std::string::npos)
+      << followed.err;
+  const Outcome again = run({"follow", path("run.mcap"), "--json-lines"});
+  EXPECT_EQ(lines_of(again.out), lines_of(content(at("out/tracks.jsonl"))));
+}
+
 TEST_F(LiveRecord, StoresItsOptions) {
   const std::vector<std::string> options{"--set", "superpixels.count=100", "--set", "tracking.min_hits=2"};
   ASSERT_EQ(record(options).code, 0);

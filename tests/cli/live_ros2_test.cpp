@@ -80,6 +80,14 @@ TEST_F(LiveRos2, AnotherProcessReceivesWhatIsPrinted) {
   EXPECT_NE(outcome.err.find(prefix + "/objects " + std::to_string(heard)), std::string::npos) << outcome.err;
 }
 
+TEST_F(LiveRos2, FollowPublishesToo) {
+  const dds::Participant participant;
+  const std::string prefix = own_topic("followed");
+  const Outcome outcome = run({"follow", sequence(), "--ros2", prefix});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("ros2 in domain "), std::string::npos) << outcome.err;
+}
+
 /// A camera that publishes a sample at 10 Hz.
 class Camera {
  public:

@@ -20,6 +20,14 @@ TEST_F(LiveView, PrintsItsAddress) {
       << outcome.err;
 }
 
+TEST_F(LiveView, FollowHasItToo) {
+  const Outcome outcome = run({"follow", source_, "--frames", "1", "--view", "127.0.0.1:0"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("view: http://127.0.0.1:")) << outcome.err;
+  EXPECT_NE(outcome.err.find("view: 0 viewers at most"), std::string::npos) << outcome.err;
+  refuses({"follow", source_, "--tunable"}, {"--tunable", "needs --view"});
+}
+
 TEST_F(LiveView, RefusesUnsafeOrInvalidOptions) {
   refuses({"live", source_, "--tunable"}, {"--tunable", "needs --view"});
   refuses({"live", source_, "--tls-key", "key.pem"}, {"--tls-key", "needs --view"});

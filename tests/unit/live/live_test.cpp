@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cairn/core/error.hpp>
 #include <cairn/live/looped.hpp>
+#include <cairn/live/queued_sink.hpp>
 #include <cairn/live/runner.hpp>
 #include <functional>
 #include <thread>
@@ -324,6 +325,57 @@ TEST(Runner, AnErrorOfTheSourceIsThrownAfterAllSinksAreDone) {
     EXPECT_THROW(runner.run(), Error);
     EXPECT_TRUE(notebook.is_finished);
   }
+}
+
+TEST(Runner, GivesFramesOneByOneToo) {
+  Camera camera(3, 0ms, false);
+  Runner runner(camera, "camera", {}, config(), LiveOptions::unpaced(), {});
+  for (int i = 0; i < 3; ++i) {
+    const auto frame = runner.next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->step.index, i);
+    EXPECT_EQ(frame->pair->name, std::to_string(i));
+  }
+  EXPECT_FALSE(runner.next());
+}
+
+TEST(Runner, APairMayBeProcessedInAnotherWay) {
+  Camera camera(3, 0ms, false);
+  Notebook notebook;
+  LiveOptions options = LiveOptions::unpaced();
+  options.step = [](const io::SequenceFrame& pair, const FollowConfig&, const Exec&) {
+    Step step;
+    step.stamp = {pair.stamp.ns + 1};
+    return step;
+  };
+  run(camera, options, notebook);
+  ASSERT_EQ(notebook.frames.size(), 3U);
+  EXPECT_EQ(notebook.frames[2]->step.stamp.ns, 20'000'001);
+}
+
+TEST(QueuedSink, PassesFramesOnAndCountsSkippedOnes) {
+  Notebook slow;
+  slow.then = [](const LiveFrame&) { std::this_thread::sleep_for(2ms); };
+  QueuedSink queued(slow, "file", "frames skipped");
+  for (int i = 0; i < 100; ++i) queued.offer(std::make_shared<LiveFrame>());
+  queued.finish();
+  EXPECT_TRUE(slow.is_finished);
+  EXPECT_GE(slow.frames.size(), 16U);
+  EXPECT_EQ(queued.summary(), "file: " + std::to_string(100 - slow.frames.size()) + " frames skipped");
+}
+
+TEST(QueuedSink, AnErrorOfItsSinkEndsTheRun) {
+  Camera camera(1000, 1ms, false);
+  Notebook full;
+  full.then = [](const LiveFrame&) { throw Error("the disk is full"); };
+  QueuedSink queued(full, "file", "frames skipped");
+  LiveOptions options;
+  options.every_frame = true;
+  Runner runner(camera, "camera", {}, config(), options, {});
+  runner.add(queued);
+  EXPECT_THROW(runner.run(), Error);
+  EXPECT_EQ(full.frames.size(), 1U);
+  EXPECT_TRUE(full.is_finished);
 }
 
 TEST(Looped, ContinuesWithIncreasingStampsAndAGapBetweenRounds) {

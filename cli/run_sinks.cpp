@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "run_sinks.hpp"
+
+#include <cairn/live/queued_sink.hpp>
+
+namespace cairn::cli {
+
+void add_run_options(CLI::App& app, RunOptions& options) {
+  add_source_options(app, options.source);
+  add_sensor_options(app, options.sensors);
+  add_config_options(app, options.config);
+  add_exec_options(app, options.exec);
+  add_run_files_options(app, options.files);
+  app.add_flag("--json-lines", options.json_lines, "one line of JSON per frame on standard output");
+  add_record_options(app, options.record);
+  add_view_options(app, options.view);
+  add_ros2_options(app, options.ros2);
+}
+
+RunSinks::RunSinks(const RunOptions& options, live::Runner& runner, const io::Sequence& source,
+                   const FollowConfig& config, bool tracks, bool waits, live::Sink& console)
+    : options_(options), runner_(runner) {
+  const std::string preset = preset_of(options.config);
+  const live::MessageForm form{.rig = source.rig(), .preset = preset, .tracks = tracks};
+  recorder_ =
+      open_recorder(options.record, live::recorded_run(source, options.source.source, preset, tracks), waits);
+  files_ = std::make_unique<RunFiles>(options.files, form, runner, source, options.source.source, config);
+  if (options.json_lines) lines_ = std::make_unique<JsonLines>(form);
+  const auto add_slow = [&](live::Sink& sink, const char* name, const char* skipped) {
+    if (waits) return runner.add(sink);
+    add(std::make_unique<live::QueuedSink>(sink, name, skipped));
+  };
+  if (waits || !options.files.output.empty())
+    add_slow(*files_, "-o", "frames not written, because the disk was too slow");
+  if (lines_) add_slow(*lines_, "stdout", "lines dropped, because they were read too slowly");
+  runner.add(console);
+  runner.add(*recorder_);
+  add(make_view(options.view, runner, *recorder_, source, preset));
+  add(make_ros2_sink(options.ros2, source));
+}
+
+void RunSinks::add(std::unique_ptr<live::Sink> sink) {
+  if (!sink) return;
+  runner_.add(*sink);
+  sinks_.push_back(std::move(sink));
+}
+
+void RunSinks::begin() {
+  begin_recording(options_.record, *recorder_);
+}
+
+std::string RunSinks::summary() const {
+  std::string text;
+  const auto add_line = [&](const live::Sink& sink) {
+    if (const std::string line = sink.summary(); !line.empty()) text += line + "\n";
+  };
+  add_line(*recorder_);
+  for (const auto& sink : sinks_) add_line(*sink);
+  return text;
+}
+
+}  // namespace cairn::cli
