@@ -12,7 +12,7 @@
 
 namespace cairn::cli {
 
-/// The options of cairn live --view.
+/// --view and its options.
 struct ViewInput {
   bool is_wanted = false;
   std::string address;  // "127.0.0.1:8765"

@@ -35,8 +35,8 @@ std::unique_ptr<MotionPriors> open_priors(const std::optional<std::filesystem::p
                                           const std::optional<std::filesystem::path>& imu,
                                           const std::string& source_name, const Sequence& source);
 
-/// Follows a source frame by frame, with data of other sensors and landmarks: the common part of `cairn
-/// follow` and Python's cairn.follow().
+/// Follows a source frame by frame, with data of other sensors and landmarks; Runner (runner.hpp) is the loop
+/// around it.
 class SequenceRun {
  public:
   /// Opens the files; the run of a map begins with the first frame. Throws Error like the readers,

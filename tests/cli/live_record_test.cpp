@@ -9,7 +9,7 @@
 
 #include "command.hpp"
 
-/// cairn live --record, and replaying such a recording.
+/// --record of cairn live and cairn follow, and replaying such a recording.
 namespace cairn::command {
 namespace {
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "command.hpp"
 
-/// cairn live --view: its output and refusals. (tests/unit/live/view_server_test.cpp tests the server.)
+/// --view of cairn live and cairn follow: its output and refusals. (tests/unit/live/view_server_test.cpp tests the server.)
 namespace cairn::command {
 namespace {
 
