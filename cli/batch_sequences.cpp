@@ -164,7 +164,7 @@ struct TrackRows::State {
     ended.clear();
     try {
       opened = open(of, {of.first, {}, of.step}, exec.pool);
-      run.emplace(*opened, of.source, io::CompanionFiles{},
+      run.emplace(*opened, of.source, io::SensorFiles{},
                   resolve_follow(config, opened->disparities(), opened->ground()), exec);
     } catch (const Error& error) {
       ended = error.what();
@@ -181,7 +181,7 @@ struct TrackRows::State {
       if (!read_ahead || read_ahead->index != index)
         return batch::error_row(name, of.source + ": frame " + std::to_string(index) + " cannot be read");
       const io::SequenceFrame frame = *std::exchange(read_ahead, std::nullopt);
-      const Step step = run->next(frame);
+      const TrackedFrame step = run->next(frame);
       auto line = batch::Json::parse(io::step_json(step, name, run->marked(), frame.frame_id));
       line["frame"] = name;
       line.erase("name");

@@ -125,14 +125,15 @@ io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& t
     check(*result.confidence, confidence.size());
     shown.confidence = confidence;
   }
-  Image<Space> space;
+  Image<ObstacleLabel> space;
   if (result.space) {
-    space = converted<Space>(io::load_labels(*result.space),
-                             [](std::uint16_t value) { return static_cast<Space>(value & 0xff); });
+    space = converted<ObstacleLabel>(io::load_labels(*result.space), [](std::uint16_t value) {
+      return static_cast<ObstacleLabel>(value & 0xff);
+    });
     check(*result.space, space.size());
     shown.space = space;
   }
-  io::Picture left;
+  io::LoadedImage left;
   if (const auto path = left_picture(truth.folder, result.name)) {
     left = io::load_picture(*path);
     check(*path, left.gray.size());
@@ -141,8 +142,8 @@ io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& t
   }
   if (result.json) {
     (void)io::load_confidences(*result.json);  // rejects a file that is no objects.json, with its name
-    constexpr std::size_t kMost = std::size_t{256} << 20;
-    shown.objects_json = io::read_file(*result.json, kMost);
+    constexpr std::size_t kMax = std::size_t{256} << 20;
+    shown.objects_json = io::read_file(*result.json, kMax);
   }
   return io::encode_frame(shown);
 }

@@ -69,7 +69,7 @@ struct Run {
     ++reliability[name].second;
   }
 
-  void add(const Step& step, double ms) {
+  void add(const TrackedFrame& step, double ms) {
     milliseconds.push_back(ms);
     if (step.is_lost) {
       ++lost;
@@ -129,7 +129,7 @@ Json summary_json(const Run& run, const FollowOptions& options, const io::Sequen
           {"options", settings}};
 }
 
-std::string line_of(const Step& step, const std::string& name) {
+std::string line_of(const TrackedFrame& step, const std::string& name) {
   const auto count = [&](auto&& which) {
     return std::count_if(step.tracks.list.begin(), step.tracks.list.end(), which);
   };
@@ -179,7 +179,7 @@ std::optional<fs::path> named(const std::string& file) {
 }
 
 /// The additional inputs; rejects options that exclude each other.
-io::CompanionFiles companions(const FollowOptions& options, const io::Sequence& source) {
+io::SensorFiles companions(const FollowOptions& options, const io::Sequence& source) {
   refuse_two_priors(options.odometry, options.imu);
   if (!options.poses.empty() && !(options.odometry.empty() && options.imu.empty()))
     throw Error("--poses: already gives the motion, expected neither --odometry nor --imu");
@@ -224,7 +224,7 @@ void check_output(const FollowOptions& options) {
   }
 }
 
-Json event_json(const LandmarkEvent& event, const Landmarked& marked, int frame) {
+Json event_json(const LandmarkEvent& event, const LandmarkUpdate& marked, int frame) {
   Json j{
       {"frame", frame}, {"stamp_ns", event.stamp.ns}, {"kind", choice_name(event.kind, kLandmarkEventKinds)}};
   if (event.landmark != LandmarkId::none) j["landmark"] = number(event.landmark);
@@ -241,7 +241,7 @@ Json event_json(const LandmarkEvent& event, const Landmarked& marked, int frame)
   return j;
 }
 
-Json control_json(const ControlEvent& event, const Step& step) {
+Json control_json(const ControlEvent& event, const TrackedFrame& step) {
   return {{"frame", step.index},
           {"stamp_ns", step.stamp.ns},
           {"kind", event.is_set ? "option_set" : "option_better"},
@@ -251,7 +251,7 @@ Json control_json(const ControlEvent& event, const Step& step) {
           {"lead", event.lead}};
 }
 
-Json unreliable_json(const Step& step) {
+Json unreliable_json(const TrackedFrame& step) {
   return {{"frame", step.index},
           {"stamp_ns", step.stamp.ns},
           {"kind", "unreliable"},
@@ -259,7 +259,7 @@ Json unreliable_json(const Step& step) {
           {"reliability", step.reliability.value.value_or(0)}};
 }
 
-std::string unreliable_line(const Step& step, const std::string& name) {
+std::string unreliable_line(const TrackedFrame& step, const std::string& name) {
   return name + ": unreliable since " + std::to_string(step.reliability.weak_frames) + " frames (" +
          text_of("%.2f", double{step.reliability.value.value_or(0)}) +
          "), weakest: " + step.reliability.weakest;
@@ -290,7 +290,7 @@ struct Outputs {
   }
 };
 
-void tell(const Step& step, const Landmarked& marked, const io::SequenceFrame& frame,
+void tell(const TrackedFrame& step, const LandmarkUpdate& marked, const io::SequenceFrame& frame,
           const FollowOptions& options, Outputs& outputs, Run& run) {
   if (outputs.files) outputs.files->add(step, frame.name, marked, frame.frame_id);
   if (outputs.page) {
@@ -338,7 +338,7 @@ void go_through(io::Sequence& source, io::SequenceRun& follower, const FollowOpt
                  progress_words(done, source.size(), frame->name,
                                 std::chrono::duration<double>(Clock::now() - began).count()));
     const auto start = Clock::now();
-    const Step step = follower.next(*frame);
+    const TrackedFrame step = follower.next(*frame);
     run.add(step, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     progress.clear();
     tell(step, follower.marked(), *frame, options, outputs, run);
@@ -357,7 +357,7 @@ void close(const std::string& state, const io::Sequence& source, io::SequenceRun
 }
 
 /// Why a run with a map has stored no landmark; empty if it has any.
-std::string no_landmark_text(const Landmarked& marked) {
+std::string no_landmark_text(const LandmarkUpdate& marked) {
   if (!marked.state.map.list.empty()) return {};
   std::string text = "no landmark stored";
   for (const auto& reason : kLandmarkRefusals) {

@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
 
-constexpr std::size_t kMostWaiting = 16;  // frames
+constexpr std::size_t kMaxWaiting = 16;  // frames
 constexpr int kNotice_ms = 50;
 /// poll() guarantees that a writable pipe takes this much without blocking (POSIX: PIPE_BUF is at least 512;
 /// Linux: 4096).
@@ -55,10 +55,10 @@ JsonLines::~JsonLines() {
 
 void JsonLines::offer(const live::LiveFramePtr& frame) {
   std::unique_lock lock(mutex_);
-  while (waits_ && queue_.size() >= kMostWaiting && !is_closed_ && !is_interrupted())
+  while (waits_ && queue_.size() >= kMaxWaiting && !is_closed_ && !is_interrupted())
     changed_.wait_for(lock, std::chrono::milliseconds(kNotice_ms));
   if (is_closed_) return;
-  if (queue_.size() >= kMostWaiting) {
+  if (queue_.size() >= kMaxWaiting) {
     ++skipped_;
     return;
   }
@@ -89,7 +89,7 @@ bool JsonLines::is_closed() const {
 
 std::string JsonLines::line_of(const live::LiveFrame& frame) const {
   if (tracks_) {
-    Landmarked marked;
+    LandmarkUpdate marked;
     marked.tracks = frame.landmarks;
     marked.events = frame.events;
     return io::step_json(frame.step, frame.pair->name, marked, frame.pair->frame_id);

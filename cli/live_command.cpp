@@ -114,7 +114,7 @@ int live_command(LiveCommandOptions options) {
     }
   }();
   std::cerr << recorded.notice();
-  io::CompanionFiles files;
+  io::SensorFiles files;
   if (!options.map.empty()) files.map = options.map;
   files.is_map_read_only = options.map_read_only;
   std::unique_ptr<JsonLines> lines;

@@ -19,10 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostFrames = 300;  // held in memory
-constexpr std::size_t kFewestFrames = 10;
+constexpr std::size_t kMaxFrames = 300;  // held in memory
+constexpr std::size_t kMinFrames = 10;
 /// A smaller gain, or one below two standard errors, does not count.
-constexpr Margin kLeastGain{.least_share = 0.05, .standard_errors = 2};
+constexpr Margin kMinGain{.least_share = 0.05, .standard_errors = 2};
 
 struct SteadinessRun {
   std::vector<float> frames;  // for each frame but the first
@@ -39,20 +39,20 @@ std::string text(double steadiness) {
 
 std::vector<io::SequenceFrame> held_frames(io::Sequence& source, const std::string& name) {
   std::vector<io::SequenceFrame> frames;
-  while (frames.size() < kMostFrames) {
+  while (frames.size() < kMaxFrames) {
     std::optional<io::SequenceFrame> frame = source.next();
     if (!frame) break;
     frames.push_back(std::move(*frame));
   }
-  if (frames.size() < kFewestFrames) {
+  if (frames.size() < kMinFrames) {
     throw Error(name + ": has " + std::to_string(frames.size()) + " frames, expected " +
-                std::to_string(kFewestFrames) + " or more to judge steadiness");
+                std::to_string(kMinFrames) + " or more to judge steadiness");
   }
   return frames;
 }
 
 /// The steadiness of the frames tuned on and of those held out.
-struct Compared {
+struct Comparison {
   SteadinessRun before;
   SteadinessRun best;
   std::size_t tuned_on = 0;
@@ -65,7 +65,7 @@ struct Compared {
   }
 };
 
-void print(const Compared& runs, const SearchResult& found) {
+void print(const Comparison& runs, const SearchResult& found) {
   std::cout << "steadiness: " << text(runs.before.mean(0, runs.tuned_on)) << " before, "
             << text(runs.best.mean(0, runs.tuned_on)) << " after";
   if (runs.tuned_on < runs.count()) {
@@ -89,7 +89,7 @@ SearchConfig search_config(const TuneSequenceOptions& options, const std::vector
                            const Config& start) {
   SearchConfig config;
   config.seed = options.seed;
-  config.margin = kLeastGain;
+  config.margin = kMinGain;
   if (options.evaluations > 0) config.evaluations = options.evaluations;
   config.is_read = [&](const std::vector<Setting>& settings, std::size_t i) {
     const std::vector<OptionInfo> active = active_options(with_settings(start, settings));
@@ -134,7 +134,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
         return std::nullopt;
       }
       try {
-        const Step step =
+        const TrackedFrame step =
             follower.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp);
         if (step.index > 0) steady.frames.push_back(step.reliability.steadiness);
       } catch (const Error&) {  // settings that contradict each other or the images
@@ -179,7 +179,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
       [&](const std::vector<Setting>&) { best = latest; });
   progress.clear();
 
-  const Compared runs{*before, best, tuned_on};
+  const Comparison runs{*before, best, tuned_on};
   std::cout << count_of(frames.size(), "frame") << ", " << count_of(options_tried.size(), "option") << ", "
             << tried << " runs in " << text_of("%.1f s", seconds()) << (is_up ? ", stopped\n" : "\n");
   print(runs, found);

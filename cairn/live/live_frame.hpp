@@ -32,7 +32,7 @@ struct Drops {
 /// The results of one pair, shared by all sinks, hence immutable.
 struct LiveFrame {
   std::shared_ptr<const io::SequenceFrame> pair;
-  Step step;
+  TrackedFrame step;
   std::vector<LandmarkOfTrack> landmarks;
   std::vector<LandmarkEvent> events;
   Clock::time_point arrived;  // of the pair

@@ -153,8 +153,9 @@ void Recording::add_frame(const LiveFrame& frame, std::uint64_t skipped_before) 
     write(reject_, stamp, ros::reject_of(header, found));
   }
   if (what_.clouds) {
-    const io::Picture& left = frame.pair->left;
-    for (const auto& [channel, space] : {std::pair{obstacles_, Space::obstacle}, {floor_, Space::floor}})
+    const io::LoadedImage& left = frame.pair->left;
+    for (const auto& [channel, space] :
+         {std::pair{obstacles_, ObstacleLabel::obstacle}, {floor_, ObstacleLabel::floor}})
       write(channel, stamp, ros::cloud_of(header, found, space, run_.rig, left.gray, left.rgb, kCloudStride));
   }
   if (what_.grid) {
@@ -199,7 +200,7 @@ void Recording::add_objects(const LiveFrame& frame, const ros::Header& header) {
   const Stamp stamp = frame.step.stamp;
   write(objects_, stamp, ros::detections_of(header, frame.step, run_.rig));
   if (run_.tracks) {
-    Landmarked marked;
+    LandmarkUpdate marked;
     marked.tracks = frame.landmarks;
     marked.events = frame.events;
     write(frames_, stamp,
@@ -232,7 +233,7 @@ void Recording::add_objects(const LiveFrame& frame, const ros::Header& header) {
 struct Recorder::State {
   State(RecordedRun of, RecorderOptions how) : run(std::move(of)), options(std::move(how)) {}
 
-  struct Waiting {
+  struct WaitingFrame {
     LiveFramePtr frame;
     std::uint64_t skipped_before = 0;
   };
@@ -246,7 +247,7 @@ struct Recorder::State {
   std::thread thread;
   mutable std::mutex mutex;  // guards all members below
   std::condition_variable changed;
-  std::deque<Waiting> queue;
+  std::deque<WaitingFrame> queue;
   std::uint64_t skipped_before = 0;
   std::uint64_t in_file = 0;  // frames written; those in the current chunk are not
   bool is_stopping = false;
@@ -324,7 +325,7 @@ void Recorder::offer(const LiveFramePtr& frame) {
 void Recorder::State::write_all() {
   try {
     while (true) {
-      Waiting next;
+      WaitingFrame next;
       {
         std::unique_lock lock(mutex);
         changed.wait_for(lock, std::chrono::seconds(1), [&] { return !queue.empty() || is_stopping; });

@@ -52,7 +52,7 @@ struct TrackLabels {
   std::map<std::int64_t, Rect> boxes;
 };
 
-TrackLabels track_labels_of(const Step& step) {
+TrackLabels track_labels_of(const TrackedFrame& step) {
   TrackLabels shown{Image<ObjectId>(step.ids.size()), {}};
   for (int y = 0; y < step.ids.height(); ++y) {
     for (int x = 0; x < step.ids.width(); ++x)
@@ -74,11 +74,11 @@ Rle rle_of(const TrackLabels& shown, TrackId id) {
 }
 
 /// Without a rig there are no metric positions, so the pose is null.
-bool has_place(const Step& step) {
+bool has_place(const TrackedFrame& step) {
   return !step.is_lost && step.motion.refusal != MotionRefusal::no_rig;
 }
 
-Json pose_json(const Step& step) {
+Json pose_json(const TrackedFrame& step) {
   if (!has_place(step)) return nullptr;
   Json turn = Json::array();
   for (const double entry : quaternion(step.map_from_camera)) turn.push_back(rounded(entry));
@@ -108,7 +108,8 @@ Json reliability_json(const Reliability& reliability) {
   return j;
 }
 
-Json track_json(const Track& track, const Step& step, const TrackLabels& shown, const Landmarked& marked) {
+Json track_json(const Track& track, const TrackedFrame& step, const TrackLabels& shown,
+                const LandmarkUpdate& marked) {
   Json j{{"id", number(track.id)},
          {"state", choice_name(track.state, kTrackStates)},
          {"moving", track.is_moving},
@@ -153,7 +154,7 @@ Json control_json(const ControlEvent& event) {
 
 }  // namespace
 
-std::string step_json(const Step& step, const std::string& name, const Landmarked& marked,
+std::string step_json(const TrackedFrame& step, const std::string& name, const LandmarkUpdate& marked,
                       const std::string& frame_id) {
   const TrackLabels shown = track_labels_of(step);
   Json tracks = Json::array();
@@ -169,7 +170,7 @@ std::string step_json(const Step& step, const std::string& name, const Landmarke
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string pose_tum(const Step& step) {
+std::string pose_tum(const TrackedFrame& step) {
   if (!has_place(step)) return {};
   const Point3 p = step.map_from_camera.translation_m;
   const auto q = quaternion(step.map_from_camera);
@@ -179,7 +180,7 @@ std::string pose_tum(const Step& step) {
   return seconds_text(step.stamp) + text.data();
 }
 
-std::string masks_mots(const Step& step) {
+std::string masks_mots(const TrackedFrame& step) {
   const TrackLabels shown = track_labels_of(step);
   std::string lines;
   for (const Track& track : step.tracks.list) {
@@ -191,7 +192,7 @@ std::string masks_mots(const Step& step) {
   return lines;
 }
 
-Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const Step& step) {
+Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const TrackedFrame& step) {
   // Objects with their track ids, by which the overlay colours and labels them.
   TrackLabels shown = track_labels_of(step);
   Objects tracked;
@@ -234,7 +235,7 @@ void FollowFiles::append(std::ofstream& file, const char* name, const std::strin
     throw Error((folder_ / name).string() + ": cannot be written: " + std::generic_category().message(errno));
 }
 
-void FollowFiles::add(const Step& step, const std::string& name, const Landmarked& marked,
+void FollowFiles::add(const TrackedFrame& step, const std::string& name, const LandmarkUpdate& marked,
                       const std::string& frame_id) {
   append(tracks_, "tracks.jsonl", step_json(step, name, marked, frame_id));
   append(poses_, "poses.tum", pose_tum(step));

@@ -44,7 +44,7 @@ bool is_empty(View<const std::uint8_t> mask) {
 }
 
 /// `slot`: as in the map, the index of the track in the list, from 1.
-Json label_places(const Step& step) {
+Json label_places(const TrackedFrame& step) {
   Json all = Json::array();
   for (std::size_t i = 0; i < step.tracks.list.size(); ++i) {
     const Track& track = step.tracks.list[i];
@@ -79,8 +79,8 @@ Json place_of_odometry(const LandmarksState& state) {
           {"position_m", json(pose.translation_m)}};
 }
 
-Json facts(const Step& step, const std::string& name, std::optional<double> milliseconds,
-           const Landmarked& marked) {
+Json facts(const TrackedFrame& step, const std::string& name, std::optional<double> milliseconds,
+           const LandmarkUpdate& marked) {
   Json line = Json::parse(step_json(step, name, marked));
   line["map_from_odom"] = place_of_odometry(marked.state);
   keep_covariance_of_place(line.at("pose"));
@@ -94,7 +94,7 @@ Json facts(const Step& step, const std::string& name, std::optional<double> mill
 }
 
 /// The index of each pixel's track in the list, from 1: smaller than ids, which grow.
-Json packed_tracks(const Step& step) {
+Json packed_tracks(const TrackedFrame& step) {
   const auto& list = step.tracks.list;  // sorted by id
   TrackId before = TrackId::none;
   long number_before = 0;
@@ -117,9 +117,9 @@ Json rig_json(const std::optional<StereoRig>& rig) {
 
 }  // namespace
 
-EncodedFrame encode_step(const Step& step, const std::string& name, View<const Gray> left,
+EncodedFrame encode_step(const TrackedFrame& step, const std::string& name, View<const Gray> left,
                          View<const Rgb> left_rgb, std::optional<double> milliseconds,
-                         const Landmarked& marked) {
+                         const LandmarkUpdate& marked) {
   const Json maps{{"left", picture_as_uri(left, left_rgb)}, {"tracks", packed_tracks(step)}};
   return {for_script(facts(step, name, milliseconds, marked)), for_script(maps)};
 }

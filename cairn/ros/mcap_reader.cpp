@@ -24,10 +24,10 @@ using mcap::Op;
 using mcap::Reader;
 
 // Limits above any real recording; larger claims are rejected before memory is allocated.
-constexpr std::uint64_t kMostChunkBytes = std::uint64_t{256} << 20;
-constexpr std::uint64_t kMostSummaryBytes = std::uint64_t{256} << 20;
-constexpr std::uint64_t kMostAttachmentBytes = std::uint64_t{16} << 20;
-constexpr std::size_t kMostDefinitionBytes = std::size_t{64} << 20;  // of all channels
+constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t kMaxSummaryBytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t kMaxAttachmentBytes = std::uint64_t{16} << 20;
+constexpr std::size_t kMaxDefinitionBytes = std::size_t{64} << 20;  // of all channels
 constexpr std::uint64_t kFooterBytes = 20;
 
 /// A file read in pieces within its bounds.
@@ -101,9 +101,9 @@ Bytes unpacked(const Bytes& content) {
   const auto crc = in.number<std::uint32_t>();
   const std::string compression = in.text();
   const auto stored = in.take(in.number<std::uint64_t>());
-  if (length > kMostChunkBytes) {
+  if (length > kMaxChunkBytes) {
     throw Error("a chunk claims " + std::to_string(length) + " bytes, expected at most " +
-                std::to_string(kMostChunkBytes));
+                std::to_string(kMaxChunkBytes));
   }
   Bytes records;
   if (compression.empty()) {
@@ -238,15 +238,15 @@ void McapReader::State::add(Op op, std::span<const std::uint8_t> content) {
     const auto before = channels.find(channel.id);
     if (before != channels.end()) definition_bytes -= before->second.schema.size();
     definition_bytes += schema.text.size();
-    if (definition_bytes > kMostDefinitionBytes)
-      throw Error("definitions of more than " + std::to_string(kMostDefinitionBytes) + " bytes");
+    if (definition_bytes > kMaxDefinitionBytes)
+      throw Error("definitions of more than " + std::to_string(kMaxDefinitionBytes) + " bytes");
     channel.schema = schema.text;
     channels.insert_or_assign(channel.id, std::move(channel));
   }
 }
 
 void McapReader::State::add_attachment(std::uint64_t content_at, std::uint64_t length) {
-  if (length > kMostAttachmentBytes || !may_read(length)) return;  // not written by cairn
+  if (length > kMaxAttachmentBytes || !may_read(length)) return;  // not written by cairn
   const Bytes content = file.read(content_at, length);
   Reader in(content);
   (void)in.take(16);
@@ -261,7 +261,7 @@ void McapReader::State::add_attachment(std::uint64_t content_at, std::uint64_t l
 }
 
 void McapReader::State::add_metadata(std::uint64_t content_at, std::uint64_t length) {
-  if (length > kMostAttachmentBytes || !may_read(length)) return;
+  if (length > kMaxAttachmentBytes || !may_read(length)) return;
   const Bytes content = file.read(content_at, length);
   Reader in(content);
   std::string name = in.text();
@@ -280,7 +280,7 @@ bool McapReader::State::read_summary() {
   const auto start = footer.number<std::uint64_t>();
   (void)footer.number<std::uint64_t>();
   const auto crc = footer.number<std::uint32_t>();
-  if (start == 0 || start > footer_at || footer_at - start > kMostSummaryBytes) return false;
+  if (start == 0 || start > footer_at || footer_at - start > kMaxSummaryBytes) return false;
   const Bytes summary = file.read(start, footer_at - start + kRecordHeader + kFooterBytes - 4);
   if (crc != 0 && ::crc32_z(0, summary.data(), summary.size()) != crc) return false;
 
@@ -336,9 +336,9 @@ bool McapReader::State::read_summary() {
 }
 
 Bytes McapReader::State::chunk_of(const Part& part) const {
-  if (part.length > kMostChunkBytes) {
+  if (part.length > kMaxChunkBytes) {
     throw Error("a chunk of " + std::to_string(part.length) + " bytes, expected at most " +
-                std::to_string(kMostChunkBytes));
+                std::to_string(kMaxChunkBytes));
   }
   return file.read(part.at, part.length);
 }
@@ -392,7 +392,7 @@ void McapReader::State::scan() {
       } else if (head.op == Op::message && head.length >= 22) {
         const Bytes id = file.read(head.at, 2);
         parts.push_back({head.at, head.length, false, {Reader(id).number<std::uint16_t>()}});
-      } else if ((head.op == Op::schema || head.op == Op::channel) && head.length <= kMostAttachmentBytes) {
+      } else if ((head.op == Op::schema || head.op == Op::channel) && head.length <= kMaxAttachmentBytes) {
         add(head.op, file.read(head.at, head.length));
       } else if (head.op == Op::attachment) {
         add_attachment(head.at, head.length);
@@ -456,8 +456,8 @@ std::optional<McapMessage> McapReader::next() {
       message.channel = content.number<std::uint16_t>();
       (void)content.number<std::uint32_t>();
       message.logged.ns = content.number<std::int64_t>();
-      constexpr std::int64_t kFarthestNs = std::numeric_limits<std::int64_t>::max() / 2;  // differences fit
-      if (message.logged.ns < 0 || message.logged.ns > kFarthestNs)
+      constexpr std::int64_t kMaxNs = std::numeric_limits<std::int64_t>::max() / 2;  // differences fit
+      if (message.logged.ns < 0 || message.logged.ns > kMaxNs)
         throw Error("a message has a time after the year 2116");
       (void)content.number<std::uint64_t>();
       message.bytes = content.rest();

@@ -28,7 +28,7 @@ bool may_be_same(const Landmark& a, const Landmark& b) {
 }
 
 std::vector<int> frames_of(const LandmarksState& state, LandmarkId id) {
-  for (const LandmarksState::Vanished& vanished : state.vanished) {
+  for (const LandmarksState::VanishedLandmark& vanished : state.vanished) {
     if (vanished.landmark == id) return vanished.frames;
   }
   return {};
@@ -46,7 +46,7 @@ bool are_apart(const Eigen::Vector3d& way, const Matrix3& covariance, const Land
 }
 
 void forget_vanished(LandmarksState& state, LandmarkId id) {
-  std::erase_if(state.vanished, [&](const LandmarksState::Vanished& v) { return v.landmark == id; });
+  std::erase_if(state.vanished, [&](const LandmarksState::VanishedLandmark& v) { return v.landmark == id; });
 }
 
 std::vector<LandmarkEvent> find_moved(LandmarksState& state, const LandmarkFrame& frame,

@@ -27,7 +27,7 @@ constexpr int kApplication = 0x63726e31;  // "crn1"
 constexpr int kSchema = 1;
 constexpr int kFramesPerTransaction = 30;
 constexpr double kSecondsPerTransaction = 1;
-constexpr int kMostObservations = 200;  // of one landmark in one run
+constexpr int kMaxObservations = 200;   // of one landmark in one run
 constexpr double kSameBaseline = 0.02;  // relative
 
 constexpr const char* kTables = R"(
@@ -72,12 +72,12 @@ double finite(const SQLite::Column& column, const char* what) {
   return value;
 }
 
-constexpr int kMostWhole = std::numeric_limits<int>::max();
+constexpr int kMaxWhole = std::numeric_limits<int>::max();
 
 int whole(std::int64_t value, const char* what, int least = 0) {
-  if (value < least || value > kMostWhole) {
+  if (value < least || value > kMaxWhole) {
     throw Error(std::string(what) + " is " + std::to_string(value) + ", expected " + std::to_string(least) +
-                " … " + std::to_string(kMostWhole));
+                " … " + std::to_string(kMaxWhole));
   }
   return static_cast<int>(value);
 }
@@ -88,17 +88,17 @@ int whole(const SQLite::Column& column, const char* what, int least = 0) {
 
 /// A side of a landmark, m.
 double side(const SQLite::Column& column, const char* what) {
-  constexpr double kMost_m = 1000;
+  constexpr double kMax_m = 1000;
   const double value = finite(column, what);
-  if (value < 0 || value > kMost_m)
+  if (value < 0 || value > kMax_m)
     throw Error(std::string(what) + " is " + std::to_string(value) + ", expected 0 … 1000 m");
   return value;
 }
 
 /// Ids are counted up from 1, so the highest must leave room.
 LandmarkId landmark_id(std::int64_t value) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 53U;
-  if (value < 1 || value > kMost)
+  constexpr std::int64_t kMax = std::int64_t{1} << 53U;
+  if (value < 1 || value > kMax)
     throw Error("landmark " + std::to_string(value) + ": expected an id of 1 … 2^53");
   return LandmarkId{value};
 }
@@ -249,12 +249,12 @@ struct MapFile::Store {
   std::optional<Pose> map_from_odom;
   std::map<LandmarkId, StoredLandmark> stored;
   std::vector<FloorCell> stored_floor;
-  struct Thinning {
+  struct ThinningRule {
     int every = 1;
     int met = 0;
     int kept = 0;
   };
-  std::map<LandmarkId, Thinning> thinning;
+  std::map<LandmarkId, ThinningRule> thinning;
 
   /// Calls `work` and rethrows its errors as Error with the file's name.
   template <class F>
@@ -576,8 +576,8 @@ LandmarkMap MapFile::load() const {
     }
     SQLite::Statement cells(*store_->database, "SELECT x, y, frames FROM floor ORDER BY x, y");
     while (cells.executeStep()) {
-      map.floor.push_back({whole(cells.getColumn(0), "floor.x", -kMostWhole),
-                           whole(cells.getColumn(1), "floor.y", -kMostWhole),
+      map.floor.push_back({whole(cells.getColumn(0), "floor.x", -kMaxWhole),
+                           whole(cells.getColumn(1), "floor.y", -kMaxWhole),
                            whole(cells.getColumn(2), "floor.frames")});
     }
     const std::string next = store_->get("next_landmark").value_or("1");
@@ -746,7 +746,7 @@ std::int64_t MapFile::begin_run(const std::string& source, Stamp began) {
   });
 }
 
-void MapFile::write(const LandmarkFrame& frame, const Landmarked& step) {
+void MapFile::write(const LandmarkFrame& frame, const LandmarkUpdate& step) {
   store_->guarded([&] {
     Store& s = *store_;
     try {
@@ -791,9 +791,9 @@ void MapFile::write(const LandmarkFrame& frame, const Landmarked& step) {
         const auto track = std::find_if(frame.tracks->list.begin(), frame.tracks->list.end(),
                                         [&](const Track& t) { return t.id == seen.track; });
         if (track == frame.tracks->list.end() || track->object == ObjectId::none) continue;
-        Store::Thinning& thin = s.thinning[seen.landmark];
+        Store::ThinningRule& thin = s.thinning[seen.landmark];
         if (thin.met++ % thin.every != 0) continue;
-        if (thin.kept >= kMostObservations) {
+        if (thin.kept >= kMaxObservations) {
           // Halves the stored observations, and from now on the rate of new ones.
           SQLite::Statement drop(
               *s.database,

@@ -77,10 +77,10 @@ std::optional<Pose> motion_of(const std::array<const FollowedCorner*, 4>& sample
 /// expected motion may have many inliers and still not be the best.
 int rounds_wanted(int inliers, std::size_t n, const OdometryConfig& config) {
   const double clean = std::pow(static_cast<double>(inliers) / static_cast<double>(n), 4.0);
-  constexpr int kLeast = 30;
-  if (clean >= 1) return kLeast;
+  constexpr int kMin = 30;
+  if (clean >= 1) return kMin;
   const double rounds = std::ceil(std::log(1.0 - double(config.confidence)) / std::log1p(-clean));
-  return std::max(kLeast, rounds < config.iterations ? static_cast<int>(rounds) : config.iterations);
+  return std::max(kMin, rounds < config.iterations ? static_cast<int>(rounds) : config.iterations);
 }
 
 /// The motion with the most inliers; the first of equals.

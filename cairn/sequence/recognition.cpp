@@ -13,7 +13,7 @@ namespace cairn {
 using landmarks::matrix;
 using landmarks::Matrix3;
 using landmarks::Matrix4;
-using landmarks::Placed;
+using landmarks::Placement;
 using landmarks::point;
 using landmarks::Pull;
 using landmarks::squared_distance;
@@ -27,7 +27,7 @@ Pose turned(double yaw, Point3 translation) {
   return {{c, -s, 0, s, c, 0, 0, 0, 1}, translation};
 }
 
-Placed place(const Candidate& candidate, const Located& located) {
+Placement place(const Candidate& candidate, const MapLocation& located) {
   const Eigen::Vector3d p = vector(located.map_from_odom(candidate.position_m));
   const Eigen::Vector3d camera = vector(located.map_from_odom(located.camera_in_odom_m));
   Eigen::Matrix<double, 3, 4> j = Eigen::Matrix<double, 3, 4>::Zero();
@@ -38,7 +38,7 @@ Placed place(const Candidate& candidate, const Located& located) {
                  j * matrix(located.covariance) * j.transpose()};
 }
 
-Located corrected(const Located& located, const std::vector<Pull>& pulls) {
+MapLocation corrected(const MapLocation& located, const std::vector<Pull>& pulls) {
   constexpr int kIterations = 6;
   constexpr double kHuber = 2;
   const Eigen::Vector3d camera = vector(located.map_from_odom(located.camera_in_odom_m));
@@ -100,7 +100,7 @@ struct CompatiblePair {
   double score = 0;
 };
 
-constexpr std::size_t kMostAllowed = 300;
+constexpr std::size_t kMaxAllowed = 300;
 
 std::vector<CompatiblePair> allowed_pairs(const LandmarkMap& map, const std::vector<Candidate>& candidates,
                                           const LandmarksConfig& config) {
@@ -112,10 +112,10 @@ std::vector<CompatiblePair> allowed_pairs(const LandmarkMap& map, const std::vec
       if (score >= static_cast<double>(config.min_score)) pairs.push_back({c, l, score});
     }
   }
-  if (pairs.size() > kMostAllowed) {
+  if (pairs.size() > kMaxAllowed) {
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const CompatiblePair& a, const CompatiblePair& b) { return a.score > b.score; });
-    pairs.resize(kMostAllowed);
+    pairs.resize(kMaxAllowed);
   }
   return pairs;
 }
@@ -227,7 +227,7 @@ bool is_same_place(const Pose& a, const Pose& b, Point3 where) {
 }
 
 /// Whether a pose in the map is within the 95 % region of a guess.
-bool suits(const Pose& map_from_odom, const Located& guess) {
+bool suits(const Pose& map_from_odom, const MapLocation& guess) {
   constexpr double kChi2Of4At95 = 9.488;
   const Pose apart = map_from_odom * inverse(guess.map_from_odom);
   Eigen::Vector4d off;
@@ -262,7 +262,7 @@ bool may_be(const Candidate& candidate, const Landmark& landmark) {
 }
 
 Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                      const Located& located, const std::vector<LandmarkId>& taken,
+                      const MapLocation& located, const std::vector<LandmarkId>& taken,
                       const LandmarksConfig& config) {
   constexpr double kReach_m = 3;   // a quick test, and the largest distance that a gate should allow
   constexpr double kColours = 20;  // squared distance added for a colour similarity of 0
@@ -279,7 +279,7 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
   };
   std::vector<PairCost> offers;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const Placed seen = landmarks::place(candidates[c], located);
+    const Placement seen = landmarks::place(candidates[c], located);
     for (std::size_t l = 0; l < map.list.size(); ++l) {
       const Landmark& landmark = map.list[l];
       const Eigen::Vector3d difference = seen.position_m - vector(landmark.position_m);
@@ -311,7 +311,7 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
 }
 
 Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                     const LandmarksConfig& config, const std::optional<Located>& guess) {
+                     const LandmarksConfig& config, const std::optional<MapLocation>& guess) {
   Recognition result;
   const auto enough = static_cast<std::size_t>(config.relocation_pairs);
   // Two at least: one determines no direction.
@@ -426,8 +426,8 @@ void add_looks(Landmark& known, const std::vector<LandmarkLook>& others) {
   }
 }
 
-Merged unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found, const Pose& pose) {
-  Merged merged;
+MapMerge unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found, const Pose& pose) {
+  MapMerge merged;
   merged.map_from_other = pose;
   merged.pairs = found.pairs;
   merged.map = std::move(map);
@@ -468,8 +468,8 @@ Merged unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found
 
 }  // namespace
 
-Merged merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
-             const LandmarksConfig& config) {
+MapMerge merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
+               const LandmarksConfig& config) {
   const std::vector<Candidate> candidates = candidates_of(other);
   const Recognition found = map_from_other ? recognise(map, candidates, {*map_from_other, {}, {}}, {}, config)
                                            : relocate(map, candidates, config);
@@ -478,7 +478,7 @@ Merged merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose
   return {std::move(map), found.pairs, std::nullopt, found.refusal};
 }
 
-Merged merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config) {
+MapMerge merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config) {
   std::int64_t latest = 0;
   for (const Landmark& ours : map.list) latest = std::max(latest, ours.run);
   LandmarkMap fresh;
@@ -503,7 +503,7 @@ Merged merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksCo
     ours->name = name;
   }
   const Recognition found = recognise(map, candidates_of(fresh), {Pose{}, {}, {}}, shared, config);
-  Merged merged = unite(std::move(map), fresh, found, Pose{});
+  MapMerge merged = unite(std::move(map), fresh, found, Pose{});
   merged.pairs.insert(merged.pairs.begin(), pairs.begin(), pairs.end());
   return merged;
 }

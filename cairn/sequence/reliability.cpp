@@ -30,7 +30,7 @@ std::optional<float> known(double share) {
 
 // ---- stereo, photometric ----
 
-void judge_pair(const Frame& frame, const Evidence& evidence, Witnesses& seen) {
+void judge_pair(const Frame& frame, const ReliabilityInputs& evidence, Witnesses& seen) {
   if (evidence.pair.right().empty() || evidence.best_right.empty()) return;
   const View<const Gray> left = evidence.pair.left();
   Image<Gray> moved;
@@ -59,17 +59,17 @@ void judge_pair(const Frame& frame, const Evidence& evidence, Witnesses& seen) {
 // ---- temporal ----
 
 /// IoU of the tracks predicted to be in view with the tracked objects, over the pixels that have a disparity.
-std::optional<float> temporal_of(const Step& step, const Warped& warped) {
+std::optional<float> temporal_of(const TrackedFrame& step, const MaskPrediction& warped) {
   constexpr float kInView = 0.5F;
-  constexpr int kFewestPixels = 16;
+  constexpr int kMinPixels = 16;
   if (step.index == 0 || step.is_lost) return std::nullopt;
   const Objects& objects = step.frame.objects;
   std::vector<TrackId> rows;
   std::vector<double> sure_before;
-  for (const Warped::Mask& mask : warped.masks) {
+  for (const MaskPrediction::Mask& mask : warped.masks) {
     const auto track = std::ranges::find(step.tracks.list, mask.track, &Track::id);
     const bool was_seen = track != step.tracks.list.end() && (track->recent >> 1U & 1U) != 0;
-    if (!was_seen || mask.in_view < kInView || mask.area < kFewestPixels) continue;
+    if (!was_seen || mask.in_view < kInView || mask.area < kMinPixels) continue;
     rows.push_back(mask.track);
     sure_before.push_back(double{track->confidence});
   }
@@ -130,7 +130,7 @@ std::optional<float> temporal_of(const Step& step, const Warped& warped) {
 
 // ---- floor ----
 
-std::optional<FloorInCamera> floor_of_frame(const Step& step, const std::optional<StereoRig>& rig) {
+std::optional<FloorInCamera> floor_of_frame(const TrackedFrame& step, const std::optional<StereoRig>& rig) {
   const auto floor = floor_frame(step.frame.ground, rig);
   if (!floor) return std::nullopt;
   return FloorInCamera{{double{floor->up.x}, double{floor->up.y}, double{floor->up.z}},
@@ -161,7 +161,7 @@ std::optional<float> floor_agreement(const std::optional<FloorInCamera>& expecte
 
 // ---- odometry ----
 
-std::optional<float> odometry_of(const Step& step) {
+std::optional<float> odometry_of(const TrackedFrame& step) {
   const MotionRefusal refusal = step.motion.refusal;
   if (step.index == 0 || refusal == MotionRefusal::off || refusal == MotionRefusal::no_rig)
     return std::nullopt;
@@ -171,8 +171,8 @@ std::optional<float> odometry_of(const Step& step) {
 
 // ---- scan ----
 
-std::optional<float> scan_of(const Step& step, const LaserScan& scan, const StereoRig& rig) {
-  constexpr int kFewestBeams = 10;
+std::optional<float> scan_of(const TrackedFrame& step, const LaserScan& scan, const StereoRig& rig) {
+  constexpr int kMinBeams = 10;
   constexpr float kAgreePx = 2;
   const Pose from_level = camera_from_level(step.map_from_camera);
   const View<const float> disparity = step.frame.disparity.disparity_px;
@@ -201,7 +201,7 @@ std::optional<float> scan_of(const Step& step, const LaserScan& scan, const Ster
     looked_at += is_known ? 1 : 0;
     agreeing += agrees ? 1 : 0;
   }
-  if (looked_at < kFewestBeams) return std::nullopt;
+  if (looked_at < kMinBeams) return std::nullopt;
   return known(static_cast<double>(agreeing) / looked_at);
 }
 
@@ -212,7 +212,7 @@ constexpr float kFlatPx = 1.05F;  // three standard deviations of a disparity
 
 /// The plane through an object's disparities; nullopt if they are few or collinear.
 std::optional<GroundPlane> plane_of(const Frame& frame, const Object& object) {
-  constexpr double kFewest = 16;
+  constexpr double kMin = 16;
   const Rect box = object.box_px;
   PlaneFit fit(box.x + box.width / 2.0, box.y + box.height / 2.0);
   for (int y = box.y; y < box.y + box.height; y += kEveryPixel) {
@@ -221,7 +221,7 @@ std::optional<GroundPlane> plane_of(const Frame& frame, const Object& object) {
       if (frame.objects.labels(x, y) == object.id && !std::isnan(d)) fit.add(x, y, double{d});
     }
   }
-  return fit.count() < kFewest ? std::nullopt : fit.solve();
+  return fit.count() < kMin ? std::nullopt : fit.solve();
 }
 
 bool is_wall(const Frame& frame, const Object& object) {
@@ -248,7 +248,7 @@ bool is_wall(const Frame& frame, const Object& object) {
 
 }  // namespace
 
-float steadiness(const Step& step, float temporal) {
+float steadiness(const TrackedFrame& step, float temporal) {
   float sure = 0;
   for (const Track& track : step.tracks.list) {
     if (track.object == ObjectId::none || track.state == TrackState::tentative) continue;
@@ -258,8 +258,8 @@ float steadiness(const Step& step, float temporal) {
   return temporal * sure;
 }
 
-Reliability judge(const Step& step, const Warped& warped, const Evidence& evidence,
-                  const Reliability& before) {
+Reliability assess_reliability(const TrackedFrame& step, const MaskPrediction& warped,
+                               const ReliabilityInputs& evidence, const Reliability& before) {
   Reliability judged;
   Witnesses& seen = judged.witnesses;
   judge_pair(step.frame, evidence, seen);
@@ -282,7 +282,7 @@ Reliability judge(const Step& step, const Warped& warped, const Evidence& eviden
     const std::optional<float> value = seen.*witness.value;
     if (!value) continue;
     ++count;
-    logarithms += std::log(double{std::max(*value, kLeastWitness)});
+    logarithms += std::log(double{std::max(*value, kMinWitness)});
     if (*value < least) {
       least = *value;
       judged.weakest = std::string(witness.name);

@@ -115,13 +115,13 @@ class Ros2Sink : public live::Sink {
   }
 
   void publish(const live::LiveFrame& live) {
-    const Step& step = live.step;
+    const TrackedFrame& step = live.step;
     const Frame& frame = step.frame;
     const Config& config = live.config->segmentation;
     const ros::FrameNames names =
         ros::frame_names(options_.camera_frame.empty() ? live.pair->frame_id : options_.camera_frame);
     const ros::Header header = ros::header_of(step.stamp, names.camera);
-    const auto cloud_of = [&](Space space) {
+    const auto cloud_of = [&](ObstacleLabel space) {
       return std::optional(
           ros::cloud_of(header, frame, space, rig_, live.pair->left.gray.view(), live.pair->left.rgb.view()));
     };
@@ -133,7 +133,7 @@ class Ros2Sink : public live::Sink {
     objects_.publish([&] { return std::optional(ros::detections_of(header, step, rig_)); });
     stats_.publish([&] { return std::optional(ros::String{stats_json(live, slot_.replaced())}); });
     grid_.publish(
-        [&] { return ros::grid_of(ros::header_of(step.stamp, names.floor), frame, rig_, config.space); });
+        [&] { return ros::grid_of(ros::header_of(step.stamp, names.floor), frame, rig_, config.obstacles); });
     labels_.publish([&] { return std::optional(ros::labels_of(header, step)); });
     reject_.publish([&] { return std::optional(ros::reject_of(header, frame)); });
     disparity_.publish([&] {
@@ -141,8 +141,8 @@ class Ros2Sink : public live::Sink {
       if (options_.marks_holes_as_ros) hole_px = hole_of_ros(config.match);
       return std::optional(ros::disparity_image_of(header, frame, rig_, config.match, hole_px));
     });
-    obstacles_.publish([&] { return cloud_of(Space::obstacle); });
-    floor_.publish([&] { return cloud_of(Space::floor); });
+    obstacles_.publish([&] { return cloud_of(ObstacleLabel::obstacle); });
+    floor_.publish([&] { return cloud_of(ObstacleLabel::floor); });
   }
 
   /// Below the least disparity, which the message counts from the principal points.

@@ -21,7 +21,7 @@ ChannelInfo of_ros(std::string_view topic) {
   return {topic, "cdr", M::kType, ros::schema_of<M>(), "ros2msg"};
 }
 
-std::string jpeg_of(const io::Picture& picture) {
+std::string jpeg_of(const io::LoadedImage& picture) {
   const View<const Gray> grey = picture.gray;
   const View<const Rgb> colour = picture.rgb;
   io::PixelRows rows{grey.size(), 1, 1, grey.data(), grey.stride()};
@@ -69,8 +69,8 @@ const std::array<ChannelInfo, kChannels>& channels() {
 
 ViewMessage encode(Channel channel, const LiveFrame& frame, const std::optional<StereoRig>& rig,
                    const ViewState& state) {
-  const Step& step = frame.step;
-  const io::Picture& left = frame.pair->left;
+  const TrackedFrame& step = frame.step;
+  const io::LoadedImage& left = frame.pair->left;
   const ros::FrameNames names = ros::frame_names(frame.pair->frame_id);
   const auto header = [&] { return ros::header_of(step.stamp, names.camera); };
   ViewMessage message{
@@ -97,8 +97,8 @@ ViewMessage encode(Channel channel, const LiveFrame& frame, const std::optional<
       payload = ros::encode(ros::detections_of(header(), step, rig));
       break;
     case Channel::obstacles:
-      payload = ros::encode(
-          ros::cloud_of(header(), step.frame, Space::obstacle, rig, left.gray, left.rgb, kCloudStride));
+      payload = ros::encode(ros::cloud_of(header(), step.frame, ObstacleLabel::obstacle, rig, left.gray,
+                                          left.rgb, kCloudStride));
       break;
     case Channel::scene:
       payload = bytes_of(scene_json(frame, rig));
