@@ -160,7 +160,7 @@ void Recording::add_frame(const LiveFrame& frame, std::uint64_t skipped_before) 
   }
   if (what_.grid) {
     if (const auto grid = ros::grid_of(ros::header_of(stamp, names_.floor), found, run_.rig,
-                                       frame.config->segmentation.space))
+                                       frame.config->segmentation.obstacles))
       write(grid_, stamp, *grid);
   }
 }

@@ -21,7 +21,7 @@ template <class V>
 void fields(LeftRightConfig& c, V&& v) {
   v("max_diff", c.max_diff, "px", "largest accepted difference of left and right disparity",
     off_or(0.0F, 64.0F));
-  v("method", c.method, "", "reference for the right image: its own winner (true) or OpenCV's votes",
+  v("method", c.method, "", "reference for the right image: its own winner or OpenCV's votes",
     kLeftRightMethods, unless("left_right.max_diff", "-1"));
 }
 
