@@ -99,6 +99,57 @@ SearchConfig search_config(const TuneSequenceOptions& options, const std::vector
   return config;
 }
 
+/// Runs of the sequence with different settings.
+class SequenceTrials {
+ public:
+  SequenceTrials(const std::vector<io::SequenceFrame>& frames, const FollowConfig& start,
+                 const std::optional<StereoRig>& rig, const Exec& exec, double seconds,
+                 const std::function<bool()>& stop)
+      : frames_(frames), start_(start), rig_(rig), exec_(exec), limit_s_(seconds), stop_(stop) {}
+
+  /// nullopt if the time is up or the user stopped; without frames if the settings were refused.
+  std::optional<SteadinessRun> operator()(const std::vector<Setting>& settings) {
+    FollowConfig config = start_;
+    config.segmentation = with_settings(start_.segmentation, settings);
+    Follower follower(config, rig_, exec_);
+    SteadinessRun steady;
+    for (const io::SequenceFrame& frame : frames_) {
+      if (stop_() || (tried_ > 0 && seconds() > limit_s_)) {
+        is_up_ = true;
+        return std::nullopt;
+      }
+      try {
+        const TrackedFrame step =
+            follower.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp);
+        if (step.index > 0) steady.frames.push_back(step.reliability.steadiness);
+      } catch (const Error&) {  // settings that contradict each other or the images
+        if (tried_ == 0) throw;
+        steady.frames.clear();
+        break;
+      }
+    }
+    ++tried_;
+    return steady;
+  }
+
+  [[nodiscard]] int tried() const { return tried_; }
+  [[nodiscard]] bool is_up() const { return is_up_; }
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(Clock::now() - began_).count();
+  }
+
+ private:
+  const std::vector<io::SequenceFrame>& frames_;
+  const FollowConfig& start_;
+  const std::optional<StereoRig>& rig_;
+  const Exec& exec_;
+  double limit_s_;
+  const std::function<bool()>& stop_;
+  Clock::time_point began_ = Clock::now();
+  int tried_ = 0;
+  bool is_up_ = false;
+};
+
 }  // namespace
 
 int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()>& stop) {
@@ -118,35 +169,9 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   const std::size_t count = frames.size() - 1;  // the first frame has no predecessor
   const auto tuned_on = count - static_cast<std::size_t>(share * static_cast<double>(count));
 
-  const auto began = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
   const Progress progress(frames.size());
-  int tried = 0;
-  bool is_up = false;
-  const auto run = [&](const std::vector<Setting>& settings) -> std::optional<SteadinessRun> {
-    FollowConfig config = start;
-    config.segmentation = with_settings(start.segmentation, settings);
-    Follower follower(config, source->rig(), exec);
-    SteadinessRun steady;
-    for (const io::SequenceFrame& frame : frames) {
-      if (stop() || (tried > 0 && seconds() > options.seconds)) {
-        is_up = true;
-        return std::nullopt;
-      }
-      try {
-        const TrackedFrame step =
-            follower.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp);
-        if (step.index > 0) steady.frames.push_back(step.reliability.steadiness);
-      } catch (const Error&) {  // settings that contradict each other or the images
-        if (tried == 0) throw;
-        steady.frames.clear();
-        break;
-      }
-    }
-    ++tried;
-    return steady;
-  };
-
+  const std::optional<StereoRig> rig = source->rig();
+  SequenceTrials run(frames, start, rig, exec, options.seconds, stop);
   const std::vector<Tunable> options_tried =
       tunables(options.patterns.empty() ? usual_tunables(start.segmentation, true) : options.patterns,
                start.segmentation);
@@ -167,9 +192,9 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   const SearchResult found = search(
       options_tried, from,
       [&](const std::vector<Setting>& settings) -> std::optional<std::vector<Loss>> {
-        progress.bar(std::min(1.0, seconds() / options.seconds),
-                     std::to_string(tried) + " tried, steadiness " + text(best.mean(0, tuned_on)) + " (was " +
-                         text(reference) + ")");
+        progress.bar(std::min(1.0, run.seconds() / options.seconds),
+                     std::to_string(run.tried()) + " tried, steadiness " + text(best.mean(0, tuned_on)) +
+                         " (was " + text(reference) + ")");
         std::optional<SteadinessRun> steady = settings == from ? before : run(settings);
         if (!steady) return std::nullopt;
         latest = std::move(*steady);
@@ -181,7 +206,8 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
 
   const Comparison runs{*before, best, tuned_on};
   std::cout << count_of(frames.size(), "frame") << ", " << count_of(options_tried.size(), "option") << ", "
-            << tried << " runs in " << text_of("%.1f s", seconds()) << (is_up ? ", stopped\n" : "\n");
+            << run.tried() << " runs in " << text_of("%.1f s", run.seconds())
+            << (run.is_up() ? ", stopped\n" : "\n");
   print(runs, found);
   const double after = runs.is_luck() ? reference : best.mean(0, tuned_on);
   io::write_file(options.output,

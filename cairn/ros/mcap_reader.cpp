@@ -143,6 +143,9 @@ struct McapReader::State {
   void add(Op op, std::span<const std::uint8_t> content);
   void add_attachment(std::uint64_t at, std::uint64_t length);
   void add_metadata(std::uint64_t at, std::uint64_t length);
+  [[nodiscard]] std::optional<Bytes> summary() const;
+  bool add_chunk_index(Reader& content);
+  std::uint64_t add_statistics(Reader& content);
   bool read_summary();
   void scan();
   void forget();
@@ -268,52 +271,69 @@ void McapReader::State::add_metadata(std::uint64_t content_at, std::uint64_t len
   metadata.insert_or_assign(std::move(name), in.words());
 }
 
-/// False if there is no summary, or one without chunk indexes.
-bool McapReader::State::read_summary() {
+/// The summary section; nullopt without one that can be read.
+std::optional<Bytes> McapReader::State::summary() const {
   const std::uint64_t tail = kRecordHeader + kFooterBytes + kMagic.size();
-  if (file.size() < 2 * kMagic.size() + tail) return false;
+  if (file.size() < 2 * kMagic.size() + tail) return std::nullopt;
   const std::uint64_t footer_at = file.size() - tail;
   const Bytes end = file.read(footer_at, tail);
-  if (!std::equal(kMagic.begin(), kMagic.end(), end.end() - kMagic.size())) return false;
+  if (!std::equal(kMagic.begin(), kMagic.end(), end.end() - kMagic.size())) return std::nullopt;
   Reader footer(end);
-  if (footer.number<Op>() != Op::footer || footer.number<std::uint64_t>() != kFooterBytes) return false;
+  if (footer.number<Op>() != Op::footer || footer.number<std::uint64_t>() != kFooterBytes)
+    return std::nullopt;
   const auto start = footer.number<std::uint64_t>();
   (void)footer.number<std::uint64_t>();
   const auto crc = footer.number<std::uint32_t>();
-  if (start == 0 || start > footer_at || footer_at - start > kMaxSummaryBytes) return false;
-  const Bytes summary = file.read(start, footer_at - start + kRecordHeader + kFooterBytes - 4);
-  if (crc != 0 && ::crc32_z(0, summary.data(), summary.size()) != crc) return false;
+  if (start == 0 || start > footer_at || footer_at - start > kMaxSummaryBytes) return std::nullopt;
+  Bytes summary = file.read(start, footer_at - start + kRecordHeader + kFooterBytes - 4);
+  if (crc != 0 && ::crc32_z(0, summary.data(), summary.size()) != crc) return std::nullopt;
+  return summary;
+}
 
-  bool has_statistics = false;
-  std::uint64_t messages = 0;
-  Reader in(summary);
+/// Adds a chunk index. False if its length is impossible.
+bool McapReader::State::add_chunk_index(Reader& content) {
+  (void)content.take(16);
+  Part part;
+  part.at = content.number<std::uint64_t>() + kRecordHeader;
+  part.length = content.number<std::uint64_t>();
+  if (part.length < kRecordHeader) return false;
+  part.length -= kRecordHeader;
+  Reader offsets = content.part();
+  while (!offsets.empty()) {
+    part.channels.insert(offsets.number<std::uint16_t>());
+    (void)offsets.number<std::uint64_t>();
+  }
+  parts.push_back(std::move(part));
+  return true;
+}
+
+/// Adds the counts of messages, by channel, and returns the number of all.
+std::uint64_t McapReader::State::add_statistics(Reader& content) {
+  const auto messages = content.number<std::uint64_t>();
+  (void)content.take(2 + 4 + 4 + 4 + 4 + 8 + 8);
+  Reader of_channels = content.part();
+  while (!of_channels.empty()) {
+    const auto id = of_channels.number<std::uint16_t>();
+    counts[id] = of_channels.number<std::uint64_t>();
+  }
+  return messages;
+}
+
+/// False if there is no summary, or one without chunk indexes.
+bool McapReader::State::read_summary() {
+  const std::optional<Bytes> bytes = summary();
+  if (!bytes) return false;
+  std::optional<std::uint64_t> messages;  // as counted
+  Reader in(*bytes);
   while (in.rest().size() > kRecordHeader + kFooterBytes - 4) {
     const auto op = in.number<Op>();
     Reader content(in.take(in.number<std::uint64_t>()));
     if (op == Op::schema || op == Op::channel) {
       add(op, content.rest());
     } else if (op == Op::chunk_index) {
-      (void)content.take(16);
-      Part part;
-      part.at = content.number<std::uint64_t>() + kRecordHeader;
-      part.length = content.number<std::uint64_t>();
-      if (part.length < kRecordHeader) return false;
-      part.length -= kRecordHeader;
-      Reader offsets = content.part();
-      while (!offsets.empty()) {
-        part.channels.insert(offsets.number<std::uint16_t>());
-        (void)offsets.number<std::uint64_t>();
-      }
-      parts.push_back(std::move(part));
+      if (!add_chunk_index(content)) return false;
     } else if (op == Op::statistics) {
-      messages = content.number<std::uint64_t>();
-      (void)content.take(2 + 4 + 4 + 4 + 4 + 8 + 8);
-      Reader of_channels = content.part();
-      while (!of_channels.empty()) {
-        const auto id = of_channels.number<std::uint16_t>();
-        counts[id] = of_channels.number<std::uint64_t>();
-      }
-      has_statistics = true;
+      messages = add_statistics(content);
     } else if (op == Op::attachment_index || op == Op::metadata_index) {
       const auto at_record = content.number<std::uint64_t>();
       const auto length = content.number<std::uint64_t>();
@@ -324,7 +344,7 @@ bool McapReader::State::read_summary() {
         add_metadata(at_record + kRecordHeader, length - kRecordHeader);
     }
   }
-  if (parts.empty() && !(has_statistics && messages == 0)) return false;  // messages outside of chunks
+  if (parts.empty() && messages != std::uint64_t{0}) return false;  // messages outside of chunks
   std::ranges::sort(parts, {}, &Part::at);
   for (const Part& part : parts) {
     if (!file.holds(part.at, part.length)) return false;

@@ -161,6 +161,24 @@ Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoRe
   return motion;
 }
 
+void Follower::match_tracks(TrackedFrame& step, const StereoPair& pair, const MaskPrediction& predicted,
+                            const Covariance6& since_key, const StereoRig& rig) {
+  const Frame& frame = step.frame;
+  const Pose& pose = step.map_from_camera;
+  const TrackingConfig& config = config_.tracking;
+  const Overlaps overlaps = overlaps_of(predicted, state_.tracks, frame.objects, frame.disparity);
+  const auto detections = detect(frame, {pair.left(), pair.left_rgb()}, rig_, config);
+  const auto matches =
+      step.is_lost ? std::vector<Assignment>{}
+                   : associate(state_.tracks, detections, overlaps, pose, since_key, step.stamp, config);
+  state_.tracks = advance_tracks(std::move(state_.tracks), detections, matches, overlaps, pose, since_key,
+                                 step.is_lost, step.stamp, config);
+  state_.remembered = remember(std::move(state_.remembered), state_.tracks, frame.objects, frame.disparity,
+                               pose, step.stamp, rig);
+  step.tracks = state_.tracks;
+  step.ids = ids_of(state_.tracks, frame.objects, exec_);
+}
+
 TrackedFrame Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
                               const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
   check(pair, stamp);
@@ -203,26 +221,12 @@ TrackedFrame Follower::follow(const StereoPair& pair, Stamp stamp, const std::op
     step.frame = segment_by_paper(FrameInput::from(pair), run);
     predict(step.frame);
   }
-  const Frame& frame = step.frame;
-  const Pose& pose = step.map_from_camera;
   state_.size = pair.size();
   state_.before = stamp;
   ++state_.frames;
 
-  // Match objects and tracks …
-  const Overlaps overlaps = overlaps_of(warped, state_.tracks, frame.objects, frame.disparity);
-  const auto detections = detect(frame, {pair.left(), pair.left_rgb()}, rig_, config_.tracking);
-  const auto matches =
-      step.is_lost ? std::vector<Assignment>{}
-                   : associate(state_.tracks, detections, overlaps, pose, since_key, stamp, config_.tracking);
-  state_.tracks = advance_tracks(std::move(state_.tracks), detections, matches, overlaps, pose, since_key,
-                                 step.is_lost, stamp, config_.tracking);
-  state_.remembered =
-      remember(std::move(state_.remembered), state_.tracks, frame.objects, frame.disparity, pose, stamp, rig);
-  step.tracks = state_.tracks;
-  step.ids = ids_of(state_.tracks, frame.objects, exec_);
+  match_tracks(step, pair, warped, since_key, rig);
 
-  // … and judge how reliable the result is.
   const bool looks_for_floor = config.ground.source == GroundSource::automatic;
   state_.reliability =
       assess_reliability(step, warped, {pair, best_right, rig_, looks_for_floor, scan}, state_.reliability);

@@ -67,6 +67,9 @@ class Follower {
   void set_config(FollowConfig config);
 
  private:
+  /// Matches the frame's objects with the tracks, which advance.
+  void match_tracks(TrackedFrame& step, const StereoPair& pair, const MaskPrediction& predicted,
+                    const Covariance6& since_key, const StereoRig& rig);
   TrackedFrame follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
                       const std::optional<Pose>& map_from_camera, const LaserScan* scan);
   void begin_control();

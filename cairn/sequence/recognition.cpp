@@ -310,26 +310,16 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
   return result;
 }
 
-Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                     const LandmarksConfig& config, const std::optional<MapLocation>& guess) {
-  Recognition result;
-  const auto enough = static_cast<std::size_t>(config.relocation_pairs);
-  // Two at least: one determines no direction.
-  const std::size_t enough_near =
-      guess ? std::min(enough, static_cast<std::size_t>(std::max(2, config.min_pairs))) : enough;
-  if (candidates.size() < enough_near) {
-    result.refusal = RecognitionRefusal::no_candidates;
-    return result;
-  }
-  const std::vector<CompatiblePair> pairs = allowed_pairs(map, candidates, config);
-  // χ² with 3 degrees of freedom, 0.95. Losing a correct pair costs little; a moved object distorts the pose.
-  constexpr double kTight = 7.81;
-  const double gate = std::min(static_cast<double>(config.gate), kTight);
+namespace {
+
+/// The distinct places where the candidates may be, each with its best constellation. Each two pairs with consistent
+/// distances give a pose, which all pairs consistent with it then refine.
+std::vector<Constellation> constellations_of(const std::vector<CompatiblePair>& pairs,
+                                             const std::vector<Candidate>& candidates, const LandmarkMap& map,
+                                             double gate) {
   Point3 middle;
   for (const Candidate& candidate : candidates)
     middle = middle + (1.0 / static_cast<double>(candidates.size())) * candidate.position_m;
-
-  // Each two pairs with consistent distances give a pose, which all pairs consistent with it then refine.
   constexpr double kSeedSlack = 2;    // for the position errors of the seeds
   std::vector<Constellation> places;  // distinct places, the best constellation of each
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -354,6 +344,27 @@ Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candi
       }
     }
   }
+  return places;
+}
+
+}  // namespace
+
+Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
+                     const LandmarksConfig& config, const std::optional<MapLocation>& guess) {
+  Recognition result;
+  const auto enough = static_cast<std::size_t>(config.relocation_pairs);
+  // Two at least: one determines no direction.
+  const std::size_t enough_near =
+      guess ? std::min(enough, static_cast<std::size_t>(std::max(2, config.min_pairs))) : enough;
+  if (candidates.size() < enough_near) {
+    result.refusal = RecognitionRefusal::no_candidates;
+    return result;
+  }
+  const std::vector<CompatiblePair> pairs = allowed_pairs(map, candidates, config);
+  // χ² with 3 degrees of freedom, 0.95. Losing a correct pair costs little; a moved object distorts the pose.
+  constexpr double kTight = 7.81;
+  const double gate = std::min(static_cast<double>(config.gate), kTight);
+  std::vector<Constellation> places = constellations_of(pairs, candidates, map, gate);
   std::erase_if(places, [&](const Constellation& place) {
     const bool is_near = guess && suits(place.map_from_odom, *guess);
     return place.pairs.size() < (is_near ? enough_near : enough);

@@ -58,73 +58,91 @@ void judge_pair(const Frame& frame, const ReliabilityInputs& evidence, Witnesses
 
 // ---- temporal ----
 
-/// IoU of the tracks predicted to be in view with the tracked objects, over the pixels that have a disparity.
-std::optional<float> temporal_of(const TrackedFrame& step, const MaskPrediction& warped) {
+/// Predicted tracks and objects of this frame, and the pixels with a disparity that they have in common.
+struct Overlay {
+  std::vector<TrackId> rows;        // tracks that are expected in view, ascending
+  std::vector<double> sure_before;  // their confidence
+  std::vector<bool> counts;         // of each object: belongs to a track
+  std::vector<int> common;          // px, by row and column
+  std::vector<int> expected;        // px of each row
+  std::vector<int> found;           // px of each column
+};
+
+Overlay overlay_of(const TrackedFrame& step, const MaskPrediction& predicted) {
   constexpr float kInView = 0.5F;
   constexpr int kMinPixels = 16;
-  if (step.index == 0 || step.is_lost) return std::nullopt;
   const Objects& objects = step.frame.objects;
-  std::vector<TrackId> rows;
-  std::vector<double> sure_before;
-  for (const MaskPrediction::Mask& mask : warped.masks) {
+  Overlay overlay;
+  for (const MaskPrediction::Mask& mask : predicted.masks) {
     const auto track = std::ranges::find(step.tracks.list, mask.track, &Track::id);
     const bool was_seen = track != step.tracks.list.end() && (track->recent >> 1U & 1U) != 0;
     if (!was_seen || mask.in_view < kInView || mask.area < kMinPixels) continue;
-    rows.push_back(mask.track);
-    sure_before.push_back(double{track->confidence});
+    overlay.rows.push_back(mask.track);
+    overlay.sure_before.push_back(double{track->confidence});
   }
   // Objects too uncertain to start a track are never predicted, so they do not count as unexpected.
   const std::size_t columns = objects.list.size();
-  std::vector<bool> counts(columns, false);
+  overlay.counts.assign(columns, false);
   for (const Track& track : step.tracks.list) {
-    if (track.object != ObjectId::none) counts[slot(number(track.object)) - 1] = true;
-    for (const ObjectId part : track.parts) counts[slot(number(part)) - 1] = true;
+    if (track.object != ObjectId::none) overlay.counts[slot(number(track.object)) - 1] = true;
+    for (const ObjectId part : track.parts) overlay.counts[slot(number(part)) - 1] = true;
   }
-  std::vector<int> common(rows.size() * columns, 0);
-  std::vector<int> expected(rows.size(), 0);
-  std::vector<int> found(columns, 0);
+  overlay.common.assign(overlay.rows.size() * columns, 0);
+  overlay.expected.assign(overlay.rows.size(), 0);
+  overlay.found.assign(columns, 0);
   for (int y = 0; y < objects.labels.height(); ++y) {
     const ObjectId* const labels = objects.labels.row(y);
-    const TrackId* const ids = warped.ids.row(y);
+    const TrackId* const ids = predicted.ids.row(y);
     const float* const d = step.frame.disparity.disparity_px.row(y);
     for (int x = 0; x < objects.labels.width(); ++x) {
       if (std::isnan(d[x]) || (labels[x] == ObjectId::none && ids[x] == TrackId::none)) continue;
-      const auto row = std::ranges::lower_bound(rows, ids[x]);
-      const bool has_row = ids[x] != TrackId::none && row != rows.end() && *row == ids[x];
-      const auto at = static_cast<std::size_t>(row - rows.begin());
-      if (has_row) ++expected[at];
+      const auto row = std::ranges::lower_bound(overlay.rows, ids[x]);
+      const bool has_row = ids[x] != TrackId::none && row != overlay.rows.end() && *row == ids[x];
+      const auto at = static_cast<std::size_t>(row - overlay.rows.begin());
+      if (has_row) ++overlay.expected[at];
       if (labels[x] == ObjectId::none) continue;
       const std::size_t column = slot(number(labels[x])) - 1;
-      ++found[column];
-      if (has_row) ++common[at * columns + column];
+      ++overlay.found[column];
+      if (has_row) ++overlay.common[at * columns + column];
     }
   }
+  return overlay;
+}
+
+/// IoU of the tracks predicted to be in view with the tracked objects, over the pixels that have a disparity.
+std::optional<float> temporal_of(const TrackedFrame& step, const MaskPrediction& predicted) {
+  if (step.index == 0 || step.is_lost) return std::nullopt;
+  const Objects& objects = step.frame.objects;
+  const Overlay overlay = overlay_of(step, predicted);
+  const std::size_t columns = objects.list.size();
   struct Pair {
     double iou;
     std::size_t row, column;
   };
   std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < overlay.rows.size(); ++i) {
     for (std::size_t j = 0; j < columns; ++j) {
-      const int both = common[i * columns + j];
-      if (both > 0 && counts[j])
-        pairs.push_back({static_cast<double>(both) / (expected[i] + found[j] - both), i, j});
+      const int both = overlay.common[i * columns + j];
+      if (both > 0 && overlay.counts[j])
+        pairs.push_back({static_cast<double>(both) / (overlay.expected[i] + overlay.found[j] - both), i, j});
     }
   }
   // Best pair first; ties by track, then by object.
   std::ranges::stable_sort(pairs, std::ranges::greater{}, &Pair::iou);
-  std::vector<bool> row_taken(rows.size(), false);
+  std::vector<bool> row_taken(overlay.rows.size(), false);
   std::vector<bool> column_taken(columns, false);
   double agreed = 0;
   for (const Pair& pair : pairs) {
     if (row_taken[pair.row] || column_taken[pair.column]) continue;
     row_taken[pair.row] = column_taken[pair.column] = true;
-    agreed += pair.iou * std::min(sure_before[pair.row], double{objects.list[pair.column].confidence});
+    agreed +=
+        pair.iou * std::min(overlay.sure_before[pair.row], double{objects.list[pair.column].confidence});
   }
   double before = 0;
-  for (const double sure : sure_before) before += sure;
+  for (const double sure : overlay.sure_before) before += sure;
   double now = 0;
-  for (std::size_t j = 0; j < columns; ++j) now += counts[j] ? double{objects.list[j].confidence} : 0.0;
+  for (std::size_t j = 0; j < columns; ++j)
+    now += overlay.counts[j] ? double{objects.list[j].confidence} : 0.0;
   return known(agreed / std::max(before, now));
 }
 
