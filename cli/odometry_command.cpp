@@ -133,8 +133,8 @@ int estimate(const OdometryOptions& options) {
     if (priors && before) prior = priors->between(*before, frame->stamp, from_level);
     if (prior) ++run.with_prior;
     if (frame->after_gap) state = after_gap(std::move(state));
-    const OdometryStep step = advance_odometry(state, frame->left.gray, scene.disparity, scene.confidence, {},
-                                               rig, prior, config.odometry);
+    const OdometryStep step = advance_odometry(
+        state, {frame->left.gray, scene.disparity, scene.confidence, {}}, rig, prior, config.odometry);
     run.milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     if (add(run, step, frame->stamp, form == io::TrajectoryForm::kitti) && options.output.empty()) {
       progress.clear();

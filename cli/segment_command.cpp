@@ -182,9 +182,16 @@ LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, con
 }
 
 /// Processes one frame, from its images to its results.
-Report work_on(LoadedFrame loaded, const io::FrameFiles& files, std::optional<std::int64_t> stamp_ns,
-               const SegmentOptions& options, const fs::path& folder, bool one_of_many, bool may_measure,
-               Exec& exec) {
+struct FrameTask {
+  const io::FrameFiles& files;
+  std::optional<std::int64_t> stamp_ns;
+  const fs::path& folder;  // of its result; may be empty
+  bool one_of_many = false;
+  bool may_measure = false;  // its images, if the result is doubtful
+};
+
+Report work_on(LoadedFrame loaded, const FrameTask& task, const SegmentOptions& options, Exec& exec) {
+  const auto& [files, stamp_ns, folder, one_of_many, may_measure] = task;
   Report report;
   report.remark = remark_on_calibration(loaded);
   const Stopwatch watch(exec);
@@ -302,8 +309,8 @@ Outcome segment_all(const SegmentOptions& options) {
       continue;
     }
     try {
-      Report report = work_on(std::move(*loaded), frames[i], stamps[i], options, folder, many,
-                              doubtful < kMaxMeasured, exec);
+      const FrameTask task{frames[i], stamps[i], folder, many, doubtful < kMaxMeasured};
+      Report report = work_on(std::move(*loaded), task, options, exec);
       if (options.html) encoded.push_back(std::move(report.frame));
       totals += report.totals;
       progress.clear();

@@ -150,6 +150,17 @@ class SequenceTrials {
   bool is_up_ = false;
 };
 
+void write(const Comparison& runs, const SearchResult& found, const ResolvedConfig& base,
+           const std::string& file) {
+  const double reference = runs.before.mean(0, runs.tuned_on);
+  const double after = runs.is_luck() ? reference : runs.best.mean(0, runs.tuned_on);
+  io::write_file(
+      file, "# Written by cairn tune --sequence: steadiness " + text(reference) + " before, " + text(after) +
+                " after.\n" +
+                io::changed_config_yaml(base.preset, with_settings(base.config, runs.kept(found))));
+  std::cout << "wrote " << file << ", for --config\n";
+}
+
 }  // namespace
 
 int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()>& stop) {
@@ -209,12 +220,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
             << run.tried() << " runs in " << text_of("%.1f s", run.seconds())
             << (run.is_up() ? ", stopped\n" : "\n");
   print(runs, found);
-  const double after = runs.is_luck() ? reference : best.mean(0, tuned_on);
-  io::write_file(options.output,
-                 "# Written by cairn tune --sequence: steadiness " + text(reference) + " before, " +
-                     text(after) + " after.\n" +
-                     io::changed_config_yaml(base.preset, with_settings(base.config, runs.kept(found))));
-  std::cout << "wrote " << options.output << ", for --config\n";
+  write(runs, found, base, options.output);
   return 0;
 }
 

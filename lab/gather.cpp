@@ -273,8 +273,17 @@ void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, co
             << phantoms << " =" << ious.str() << " =" << scores.str() << ' ' << milliseconds << '\n';
 }
 
-void work(int job, const std::string& folder, bool grey, const HintNetwork& network,
-          const FittedTrees& same_thing, const FittedTrees& whole_object, float min_score, Files& files) {
+struct Job {
+  int number = 0;
+  std::string folder;
+  bool grey = false;
+  const HintNetwork& network;
+  const FittedTrees& same_thing;
+  const FittedTrees& whole_object;
+};
+
+void work(const Job& of, float min_score, Files& files) {
+  const auto& [job, folder, grey, network, same_thing, whole_object] = of;
   const TrueFrame frame = load_true_frame(io::find_frames(folder).front());
   Config config;
   config.match.num_disparities = frame.num_disparities;
@@ -349,9 +358,9 @@ int run(std::span<char*> arguments) {
   std::string same_thing;
   std::string whole_object;
   for (int job = 0; jobs >> folder >> colour >> hints >> same_thing >> whole_object; ++job) {
-    work(job, folder, colour == "grey", networks.at(hints, hint_network()),
-         trees.at(same_thing, merge_classifier()), trees.at(whole_object, object_classifier()), min_score,
-         files);
+    work({job, folder, colour == "grey", networks.at(hints, hint_network()),
+          trees.at(same_thing, merge_classifier()), trees.at(whole_object, object_classifier())},
+         min_score, files);
   }
   return 0;
 }

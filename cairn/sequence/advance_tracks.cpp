@@ -275,8 +275,8 @@ Tracks rebased_to_keyframe(Tracks tracks, const Pose& map_from_camera, const Cov
 
 Tracks advance_tracks(Tracks tracks, const std::vector<Detection>& detections,
                       const std::vector<Assignment>& matches, const Overlaps& overlaps,
-                      const Pose& map_from_camera, const Covariance6& pose_covariance, bool is_lost,
-                      Stamp now, const TrackingConfig& config) {
+                      const CameraAt& camera, const TrackingConfig& config) {
+  const auto& [now, map_from_camera, pose_covariance, is_lost] = camera;
   const double dt_s = seconds_between(tracks.stamp, now);
   tracks.stamp = now;
   tracks.odometry_suspect = false;

@@ -152,10 +152,10 @@ std::vector<ObjectId> joined_objects(const Tracks& tracks, const Overlaps& overl
 }
 
 std::vector<Assignment> associate(const Tracks& tracks, const std::vector<Detection>& detections,
-                                  const Overlaps& overlaps, const Pose& map_from_camera,
-                                  const Covariance6& pose_covariance, Stamp now,
+                                  const Overlaps& overlaps, const CameraAt& camera,
                                   const TrackingConfig& config) {
-  const Costs cost(tracks, detections, overlaps, map_from_camera, pose_covariance, now, config);
+  const Costs cost(tracks, detections, overlaps, camera.map_from_camera, camera.pose_covariance, camera.now,
+                   config);
   std::vector<int> sighting_of(tracks.list.size(), -1);
   std::vector<bool> is_taken(detections.size(), false);
   std::vector<std::size_t> sure;

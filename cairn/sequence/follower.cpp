@@ -147,8 +147,8 @@ Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoRe
   const Image<std::uint8_t> moving =
       expected_movers(state_.remembered, state_.tracks, odometry.map_from_camera * inverse(expected_step),
                       stamp, *rig_, pair.size(), exec_);
-  OdometryStep moved = advance_odometry(odometry, pair.left(), seen.disparity, seen.confidence, moving, *rig_,
-                                        prior, config_.odometry);
+  OdometryStep moved = advance_odometry(odometry, {pair.left(), seen.disparity, seen.confidence, moving},
+                                        *rig_, prior, config_.odometry);
   const Pose before = odometry.map_from_camera;
   odometry = std::move(moved.state);
   motion = moved.motion;
@@ -164,17 +164,15 @@ Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoRe
 void Follower::match_tracks(TrackedFrame& step, const StereoPair& pair, const MaskPrediction& predicted,
                             const Covariance6& since_key, const StereoRig& rig) {
   const Frame& frame = step.frame;
-  const Pose& pose = step.map_from_camera;
   const TrackingConfig& config = config_.tracking;
+  const CameraAt camera{step.stamp, step.map_from_camera, since_key, step.is_lost};
   const Overlaps overlaps = overlaps_of(predicted, state_.tracks, frame.objects, frame.disparity);
   const auto detections = detect(frame, {pair.left(), pair.left_rgb()}, rig_, config);
-  const auto matches =
-      step.is_lost ? std::vector<Assignment>{}
-                   : associate(state_.tracks, detections, overlaps, pose, since_key, step.stamp, config);
-  state_.tracks = advance_tracks(std::move(state_.tracks), detections, matches, overlaps, pose, since_key,
-                                 step.is_lost, step.stamp, config);
+  const auto matches = step.is_lost ? std::vector<Assignment>{}
+                                    : associate(state_.tracks, detections, overlaps, camera, config);
+  state_.tracks = advance_tracks(std::move(state_.tracks), detections, matches, overlaps, camera, config);
   state_.remembered = remember(std::move(state_.remembered), state_.tracks, frame.objects, frame.disparity,
-                               pose, step.stamp, rig);
+                               step.map_from_camera, step.stamp, rig);
   step.tracks = state_.tracks;
   step.ids = ids_of(state_.tracks, frame.objects, exec_);
 }

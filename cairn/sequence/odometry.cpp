@@ -618,10 +618,9 @@ OdometryState after_gap(OdometryState state) {
   return state;
 }
 
-OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left,
-                              const DisparityMap& disparity, View<const float> confidence,
-                              View<const std::uint8_t> moving, const StereoRig& rig,
+OdometryStep advance_odometry(const OdometryState& before, const OdometryFrame& frame, const StereoRig& rig,
                               const std::optional<MotionPrior>& given, const OdometryConfig& config) {
+  const auto& [left, disparity, confidence, moving] = frame;
   const PresentFrame present{left, disparity, confidence, moving, rig, config};
   const std::optional<MotionPrior> prior = given && is_usable(*given) ? given : std::nullopt;
   OdometryStep step{before, {}};

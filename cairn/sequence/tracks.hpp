@@ -177,21 +177,27 @@ struct Assignment {
 Tracks rebased_to_keyframe(Tracks tracks, const Pose& map_from_camera, const Covariance6& key_covariance,
                            bool is_new_segment);
 
+/// When and where the camera takes a frame.
+struct CameraAt {
+  Stamp now;
+  Pose map_from_camera;
+  Covariance6 pose_covariance{};  // since the keyframe
+  bool is_lost = false;           // the pose is unknown
+};
+
 /// Assigns objects to tracks: minimum cost (Kuhn 1955) over position, size, appearance and overlap, in two
 /// rounds, objects of high confidence first (Zhang et al. 2022, "ByteTrack"). Ties: the lower track, then the
 /// lower object. A track detected in parts has several matches, the main one first. By track, ascending.
 /// `pose_covariance`: of the pose relative to the keyframe, along the map's axes.
 /// (docs/stages/tracking.md)
 std::vector<Assignment> associate(const Tracks& tracks, const std::vector<Detection>& detections,
-                                  const Overlaps& overlaps, const Pose& map_from_camera,
-                                  const Covariance6& pose_covariance, Stamp now,
+                                  const Overlaps& overlaps, const CameraAt& camera,
                                   const TrackingConfig& config);
 
 /// The tracks after this frame: matched ones updated, others predicted and aged, new ones started, dead ones
-/// removed. `is_lost`: the camera pose is unknown; all tracks are predicted and none is updated.
+/// removed. While the camera is lost, all tracks are predicted and none is updated.
 Tracks advance_tracks(Tracks tracks, const std::vector<Detection>& detections,
                       const std::vector<Assignment>& matches, const Overlaps& overlaps,
-                      const Pose& map_from_camera, const Covariance6& pose_covariance, bool is_lost,
-                      Stamp now, const TrackingConfig& config);
+                      const CameraAt& camera, const TrackingConfig& config);
 
 }  // namespace cairn

@@ -135,13 +135,21 @@ struct RegisterPath {
   CAIRN_LANES_INLINE void set(int, bytes::Vec<D> along) const { all = along; }
 };
 
+/// From one pixel of a path to the next: the minimum of L there, and the penalties.
+template <class D>
+struct Transition {
+  bytes::Vec<D> least;
+  bytes::Vec<D> small;
+  bytes::Vec<D> large;
+};
+
 /// Advances by one pixel: `along` holds the L of the previous pixel and receives that of this one. `least` is
 /// the minimum of the former in every lane; returns the minimum of the latter. At the start of a path, all
 /// are 0. Calls use(i, C, L − C) for each vector.
 template <class D, class Along, class Use>
 CAIRN_LANES_INLINE bytes::Vec<D> go_on(D d, const std::uint8_t* costs, const Along& along,
-                                       bytes::Vec<D> least, bytes::Vec<D> small, bytes::Vec<D> large,
-                                       int lanes, const Use& use) {
+                                       const Transition<D>& by, int lanes, const Use& use) {
+  const auto least = by.least, small = by.small, large = by.large;
   const auto none = bytes::Set(d, kNoLane);
   auto before = none;
   auto here = along.get(0);
@@ -291,8 +299,8 @@ class Descent {
       expect_writes(next_steps + at, lanes);
       average(above + at, here + at, below + at, beyond, lanes, costs + at);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_above[x]));
-      const auto now = go_on(d, costs + at, MemoryPath<D>{d, along + at}, bytes::Set(d, least[x]), small,
-                             penalty, lanes, Keep<D>{d, steps + at});
+      const auto now = go_on(d, costs + at, MemoryPath<D>{d, along + at},
+                             {bytes::Set(d, least[x]), small, penalty}, lanes, Keep<D>{d, steps + at});
       least[x] = bytes::GetLane(now);
     }
   }
@@ -341,8 +349,8 @@ void go_up(const SemiGlobalTask& task, int first, int last, int top, int bottom)
       expect_reads(next_costs + at, lanes);
       expect_writes(next_steps + at, lanes);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_below[x]));
-      const auto now = go_on(d, costs + at, MemoryPath<D>{d, along + at}, bytes::Set(d, least[x]), small,
-                             penalty, lanes, Accumulate<D>{d, steps + at});
+      const auto now = go_on(d, costs + at, MemoryPath<D>{d, along + at},
+                             {bytes::Set(d, least[x]), small, penalty}, lanes, Accumulate<D>{d, steps + at});
       least[x] = bytes::GetLane(now);
     }
   }
@@ -411,11 +419,11 @@ class Crossing {
       for (int row = 0; row < kRows; ++row) {
         const auto penalty = bytes::Set(d, large_penalty(large, smooth[row][x], smooth[row][from]));
         if constexpr (kOneVector) {
-          least[row] = go_on(d, costs[row] + x * lanes, RegisterPath<D>{held[row]}, least[row], small,
-                             penalty, lane_count(d), use(row));
+          least[row] = go_on(d, costs[row] + x * lanes, RegisterPath<D>{held[row]},
+                             {least[row], small, penalty}, lane_count(d), use(row));
         } else {
-          least[row] = go_on(d, costs[row] + x * lanes, MemoryPath<D>{d, along + row * lanes}, least[row],
-                             small, penalty, lanes, use(row));
+          least[row] = go_on(d, costs[row] + x * lanes, MemoryPath<D>{d, along + row * lanes},
+                             {least[row], small, penalty}, lanes, use(row));
         }
       }
     }

@@ -153,7 +153,7 @@ using Pairs = std::vector<std::pair<std::int64_t, std::int32_t>>;
 
 std::vector<Assignment> associated(const Tracks& tracks, const std::vector<Detection>& detections,
                                    const Overlaps& overlaps) {
-  return associate(tracks, detections, overlaps, {}, {}, Stamp{100'000'000}, {});
+  return associate(tracks, detections, overlaps, {Stamp{100'000'000}, {}}, {});
 }
 
 TEST(Associate, GivesEachTrackTheObjectAtItsPlace) {

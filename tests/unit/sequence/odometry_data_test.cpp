@@ -82,7 +82,7 @@ Measurement measure(const Drive& drive) {
     if (wheels && k > 0) prior = wheels->between(ours.back().stamp, frame->stamp, from_level);
     const std::clock_t start = std::clock();
     const OdometryStep step =
-        advance_odometry(state, left, scene.disparity, scene.confidence, {}, *source->rig(), prior, {});
+        advance_odometry(state, {left, scene.disparity, scene.confidence, {}}, *source->rig(), prior, {});
     times.push_back(1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     ours.push_back({frame->stamp, step.state.map_from_camera});
     if (step.motion.refusal != MotionRefusal::none) ++all.refused;

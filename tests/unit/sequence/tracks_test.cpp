@@ -207,8 +207,8 @@ struct Story {
             const Pose& pose = {}) {
     const Stamp now = seconds(0.1 * ++frame);
     const auto matches =
-        is_lost ? std::vector<Assignment>{} : associate(tracks, detections, overlaps, pose, {}, now, config);
-    tracks = advance_tracks(tracks, detections, matches, overlaps, pose, {}, is_lost, now, config);
+        is_lost ? std::vector<Assignment>{} : associate(tracks, detections, overlaps, {now, pose}, config);
+    tracks = advance_tracks(tracks, detections, matches, overlaps, {now, pose, {}, is_lost}, config);
   }
   void step(const std::vector<Detection>& detections) {
     step(detections, plain(static_cast<int>(detections.size())));
