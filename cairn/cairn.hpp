@@ -19,7 +19,7 @@
 #include <cairn/stereo/texture.hpp>           // reject_textureless
 #include <cairn/stereo/disparity_map.hpp>     // combine, external_disparity
 #include <cairn/image/noise.hpp>                 // noise_sigma
-#include <cairn/regions/evidence.hpp>          // find_evidence
+#include <cairn/regions/textured.hpp>          // select_textured
 #include <cairn/scene/ground_plane.hpp>      // fit_ground, reject_below_ground, label_floor
 #include <cairn/scene/floor_frame.hpp>       // floor_frame
 #include <cairn/stereo/speckle.hpp>           // reject_speckles
@@ -36,12 +36,12 @@
 #include <cairn/regions/superpixels.hpp>       // cut_superpixels
 #include <cairn/regions/object_hints.hpp>      // hint_objects
 #include <cairn/regions/merge_tree.hpp>        // grow_merge_tree
-#include <cairn/regions/choose_objects.hpp>    // choose_objects, groups_of
+#include <cairn/regions/choose_objects.hpp>    // choose_objects, object_regions
 #include <cairn/objects/fuse.hpp>                // fuse
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/objects/locate.hpp>              // locate
 #include <cairn/objects/refine_objects.hpp>      // refine_objects
-#include <cairn/objects/space.hpp>               // label_space
+#include <cairn/objects/obstacles.hpp>               // label_obstacles
 #include <cairn/pipeline/config.hpp>             // Config, presets, options
 #include <cairn/pipeline/segment.hpp>            // segment: all of the above
 #include <cairn/pipeline/segmenter.hpp>          // Segmenter: the same for video

@@ -56,7 +56,7 @@ int plan(const BatchOptions& options) {
   const std::string config =
       inputs.tracks ? config_of_tracked_run(options.config) : config_of_run(options.config);
   const auto [frames, sequences] = planned_frames(inputs, pool);
-  const batch::Planned planned = batch::plan(options.output, frames, sequences, config);
+  const batch::PlanResult planned = batch::plan(options.output, frames, sequences, config);
   std::cout << (planned.was_there ? "already planned: " : "planned: ")
             << count_of(planned.run.frames, "frame") << " of " << count_of(inputs.paths.size(), "input")
             << ", run " << planned.run.id.substr(0, 12) << " in " << options.output << "\n";
@@ -112,7 +112,7 @@ int work(const BatchOptions& options) {
   RowMaker make_row(run, options);
   const batch::FrameSpan span = batch::span_of(shard, run);
   const Progress progress(span.end - span.begin);
-  const batch::Worked worked = batch::work_on(
+  const batch::WorkResult worked = batch::work_on(
       run, shard, [&](const batch::PlannedFrame& frame) { return make_row(frame); },
       [&](std::size_t place, std::size_t, const std::string& name) { progress.at(place, name); },
       [&](const std::string& whom) {
@@ -176,9 +176,9 @@ int merge(const BatchOptions& options) {
     const batch::FrameSpan& span = missing[i].span;
     const std::size_t count = span.end - span.begin;
     missing_count += count;
-    constexpr std::size_t kMostNamed = 20;
-    if (i == kMostNamed) std::cerr << "cairn: and others\n";
-    if (i >= kMostNamed) continue;
+    constexpr std::size_t kMaxNamed = 20;
+    if (i == kMaxNamed) std::cerr << "cairn: and others\n";
+    if (i >= kMaxNamed) continue;
     std::cerr << "cairn: missing: " << missing[i].first;
     if (count > 1) std::cerr << " … " << missing[i].last;
     std::cerr << " (" << count_of(count, "frame") << ")\n";
@@ -192,7 +192,7 @@ int merge(const BatchOptions& options) {
   std::optional<batch::ZstdPacker> packer;
   if (options.output.ends_with(".zst")) packer.emplace();
   io::GrowingFile file(options.output);
-  const batch::Merged merged =
+  const batch::MergeResult merged =
       batch::merge(run, [&](std::string_view row) { file.append(packer ? packer->pack(row) : row); });
   if (packer) file.append(packer->end());
   file.finish();

@@ -148,7 +148,7 @@ class Planner {
 
   const std::string& sum_of(const std::string& calib) {
     std::string& sum = sums_[calib];
-    if (sum.empty()) sum = io::sha256(io::read_file(calib, io::kMostTextBytes));
+    if (sum.empty()) sum = io::sha256(io::read_file(calib, io::kMaxTextBytes));
     return sum;
   }
 
@@ -230,7 +230,7 @@ void BatchReader::check(const PlannedFrame& frame) {
   const std::string calib = text_at(frame, "calib");
   if (calib.empty()) return;
   std::string& sum = calibrations_[calib];
-  if (sum.empty()) sum = io::sha256(io::read_file(calib, io::kMostTextBytes));
+  if (sum.empty()) sum = io::sha256(io::read_file(calib, io::kMaxTextBytes));
   if (sum != text_at(frame, "calib_sha256")) {
     throw Error(calib + ": changed since the run was planned, expected the calibration of frame " +
                 frame.name + " unchanged, or a new plan");

@@ -54,7 +54,7 @@ struct Truth {
 struct Subject {
   std::string name;
   bool drawn = false;
-  io::Picture left;
+  io::LoadedImage left;
   Image<Gray> right;
   std::optional<StereoRig> rig;
   Config config;
@@ -65,8 +65,8 @@ struct Subject {
 };
 
 Size size_in(const std::string& words) {
-  constexpr int kLeast = 16;
-  constexpr int kMost = 8192;
+  constexpr int kMin = 16;
+  constexpr int kMax = 8192;
   Size size;
   const char* const end = words.data() + words.size();
   const auto [cross, bad_width] = std::from_chars(words.data(), end, size.width);
@@ -75,10 +75,10 @@ Size size_in(const std::string& words) {
     const auto [rest, bad_height] = std::from_chars(cross + 1, end, size.height);
     good = bad_height == std::errc() && rest == end;
   }
-  good = good && std::min(size.width, size.height) >= kLeast && std::max(size.width, size.height) <= kMost;
+  good = good && std::min(size.width, size.height) >= kMin && std::max(size.width, size.height) <= kMax;
   if (!good) {
     throw Error("--size " + words + ": expected WIDTHxHEIGHT, e.g. 640x480, each side from " +
-                std::to_string(kLeast) + " to " + std::to_string(kMost));
+                std::to_string(kMin) + " to " + std::to_string(kMax));
   }
   return size;
 }
@@ -420,8 +420,8 @@ int bench(const BenchOptions& options, bool drawn) {
 }  // namespace
 
 Work declare_bench(CLI::App& app) {
-  constexpr int kMostFrames = 1'000'000;
-  constexpr double kMostSeconds = 86'400;
+  constexpr int kMaxFrames = 1'000'000;
+  constexpr double kMaxSeconds = 86'400;
   auto options = std::make_shared<BenchOptions>();
   add_input_options(app, options->input);
   app.get_option("LEFT")->required(false);
@@ -429,10 +429,10 @@ Work declare_bench(CLI::App& app) {
       ->type_name("WxH");
   add_exec_options(app, options->exec);
   app.add_option("--frames", options->frames, "frames to time after one warm-up frame")
-      ->check(CLI::Range(1, kMostFrames).name(""))
+      ->check(CLI::Range(1, kMaxFrames).name(""))
       ->type_name("N");
   app.add_option("--seconds", options->seconds, "time limit; at least three frames are timed")
-      ->check(CLI::Range(0.0, kMostSeconds).name(""))
+      ->check(CLI::Range(0.0, kMaxSeconds).name(""))
       ->type_name("S");
   app.add_option("--truth", options->truth,
                  "true disparity of the left image (.png, .pfm), or a folder with disp_left and optionally "

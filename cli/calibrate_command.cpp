@@ -22,16 +22,15 @@ struct CalibrateOptions {
 
 /// "9x6"
 io::Board board_of(const CalibrateOptions& options) {
-  constexpr int kFewest = 3;
-  constexpr int kMost = 100;
+  constexpr int kMin = 3;
+  constexpr int kMax = 100;
   io::Board board{0, 0, options.square_m};
   const char* end = options.board.data() + options.board.size();
   const auto columns = std::from_chars(options.board.data(), end, board.columns);
   const bool has_mark = columns.ptr != end && *columns.ptr == 'x';
   const auto rows = std::from_chars(has_mark ? columns.ptr + 1 : end, end, board.rows);
   const bool is_read = has_mark && rows.ec == std::errc{} && rows.ptr == end;
-  if (!is_read || std::min(board.columns, board.rows) < kFewest ||
-      std::max(board.columns, board.rows) > kMost) {
+  if (!is_read || std::min(board.columns, board.rows) < kMin || std::max(board.columns, board.rows) > kMax) {
     throw Error("--board " + options.board +
                 ": expected the inner corners of the board, COLUMNSxROWS, e.g. 9x6, each in 3 ... 100");
   }
@@ -39,7 +38,7 @@ io::Board board_of(const CalibrateOptions& options) {
 }
 
 /// Sightings of the board in pairs of one size.
-struct Sightings {
+struct Detections {
   Size size;
   std::vector<std::string> names;
   std::vector<io::BoardSighting> list;
@@ -48,9 +47,9 @@ struct Sightings {
   [[nodiscard]] std::size_t pairs() const { return names.size() + without_board.size(); }
 };
 
-Sightings& of_size(std::vector<Sightings>& groups, Size size) {
+Detections& of_size(std::vector<Detections>& groups, Size size) {
   const auto found =
-      std::find_if(groups.begin(), groups.end(), [&](const Sightings& group) { return group.size == size; });
+      std::find_if(groups.begin(), groups.end(), [&](const Detections& group) { return group.size == size; });
   if (found != groups.end()) return *found;
   groups.push_back({size, {}, {}, {}});
   return groups.back();
@@ -58,14 +57,14 @@ Sightings& of_size(std::vector<Sightings>& groups, Size size) {
 
 /// Detects the board in all pairs of the most frequent size; names of pairs of another size go to
 /// `of_other_size`.
-Sightings look_at(const std::vector<io::FrameFiles>& pairs, const io::Board& board,
-                  std::vector<std::string>& of_other_size) {
-  std::vector<Sightings> groups;
+Detections look_at(const std::vector<io::FrameFiles>& pairs, const io::Board& board,
+                   std::vector<std::string>& of_other_size) {
+  std::vector<Detections> groups;
   const Progress progress(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     progress.at(i, pairs[i].name);
-    const io::PicturePair images = io::load_pair(pairs[i].left, right_of(pairs[i]));
-    Sightings& group = of_size(groups, images.left.gray.size());
+    const io::LoadedPair images = io::load_pair(pairs[i].left, right_of(pairs[i]));
+    Detections& group = of_size(groups, images.left.gray.size());
     auto left = io::find_board(images.left.gray, board);
     auto right = io::find_board(images.right.gray, board);
     if (left && right) {
@@ -77,8 +76,8 @@ Sightings look_at(const std::vector<io::FrameFiles>& pairs, const io::Board& boa
   }
   const auto most =
       std::max_element(groups.begin(), groups.end(),
-                       [](const Sightings& a, const Sightings& b) { return a.pairs() < b.pairs(); });
-  for (const Sightings& group : groups) {
+                       [](const Detections& a, const Detections& b) { return a.pairs() < b.pairs(); });
+  for (const Detections& group : groups) {
     if (group.size == most->size) continue;
     of_other_size.insert(of_other_size.end(), group.names.begin(), group.names.end());
     of_other_size.insert(of_other_size.end(), group.without_board.begin(), group.without_board.end());
@@ -92,10 +91,10 @@ std::string named(const std::vector<std::string>& names) {
   return all;
 }
 
-std::string too_few(const Sightings& sightings, const CalibrateOptions& options) {
+std::string too_few(const Detections& sightings, const CalibrateOptions& options) {
   return "--board " + options.board + ": all inner corners are visible in " +
          std::to_string(sightings.list.size()) + " of " + std::to_string(sightings.pairs()) +
-         " pairs, expected at least " + std::to_string(io::kLeastSightings) +
+         " pairs, expected at least " + std::to_string(io::kMinSightings) +
          ", preferably fifteen; a board of 10x7 squares has 9x6 inner corners";
 }
 
@@ -116,8 +115,8 @@ std::string judge_side(const std::string& text) {
 int calibrate(const CalibrateOptions& options) {
   const io::Board board = board_of(options);
   std::vector<std::string> of_other_size;
-  const Sightings sightings = look_at(io::find_pairs(options.folder), board, of_other_size);
-  if (sightings.list.size() < io::kLeastSightings) throw Error(too_few(sightings, options));
+  const Detections sightings = look_at(io::find_pairs(options.folder), board, of_other_size);
+  if (sightings.list.size() < io::kMinSightings) throw Error(too_few(sightings, options));
   const io::StereoCalibration found = io::calibrate_stereo(sightings.list, board, sightings.size);
   const StereoRig rig = io::Rectifier(found.raw).rig();
   const std::string error = text_of("%.3f px", found.error_px);

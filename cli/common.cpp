@@ -79,9 +79,9 @@ ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrat
 }
 
 void add_exec_options(CLI::App& app, ExecOptions& options) {
-  constexpr int kMostThreads = 1024;
+  constexpr int kMaxThreads = 1024;
   app.add_option("--threads", options.threads, "number of threads; 0 = one per processor")
-      ->check(CLI::Range(0, kMostThreads).name(""))
+      ->check(CLI::Range(0, kMaxThreads).name(""))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--target", options.target,
@@ -261,7 +261,7 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
     if (!map) refuse_without_map(files, options.disparity);
     frame.given = load_given(*map, frame.left.gray.size(), files.left, exec);
   } else {
-    io::PicturePair pair = io::load_pair(files.left, right_of(files), exec.pool);
+    io::LoadedPair pair = io::load_pair(files.left, right_of(files), exec.pool);
     frame.left = std::move(pair.left);
     frame.right = std::move(pair.right.gray);
   }
@@ -387,12 +387,12 @@ std::string Table::text() const {
   return all;
 }
 
-void LeftOut::add(const std::string& frame, const std::string& why) {
+void SkippedFiles::add(const std::string& frame, const std::string& why) {
   std::cerr << "cairn: " << on_one_line("frame " + frame + " is skipped: " + why) << "\n";
   frames_.push_back(frame);
 }
 
-int LeftOut::exit_code(std::size_t frames_in_all) const {
+int SkippedFiles::exit_code(std::size_t frames_in_all) const {
   if (frames_.empty()) return 0;
   std::cout.flush();
   std::cerr << "cairn: " << frames_.size() << " of " << frames_in_all << " frames skipped\n";

@@ -75,7 +75,7 @@ const std::filesystem::path& right_of(const io::FrameFiles& files);
 
 /// A frame with everything needed to process it.
 struct LoadedFrame {
-  io::Picture left;
+  io::LoadedImage left;
   Image<Gray> right;                  // empty with a given disparity
   std::optional<DisparityMap> given;  // instead of the right image
   std::optional<StereoRig> rig;
@@ -134,7 +134,7 @@ class Table {
 };
 
 /// The skipped frames of a folder run, whose files are unusable. The others are processed.
-class LeftOut {
+class SkippedFiles {
  public:
   /// Also prints a line on stderr.
   void add(const std::string& frame, const std::string& why);

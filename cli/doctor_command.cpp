@@ -22,7 +22,7 @@ using io::Json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestSequence = 60;  // pairs held in memory at a time
-constexpr std::size_t kMostSequences = 4;     // of a longer folder: at its start, its end and in between
+constexpr std::size_t kMaxSequences = 4;      // of a longer folder: at its start, its end and in between
 
 struct DoctorOptions {
   InputOptions input;
@@ -38,17 +38,17 @@ struct ExaminedPair {
   std::optional<Size> size;              // of the left image
   std::optional<PairMeasures> measures;  // nullopt if the images differ in size
   std::vector<Finding> findings;
-  std::vector<NotChecked> not_checked;
+  std::vector<SkippedCheck> not_checked;
 };
 
 // ---- one pair ----
 
 /// The pair, or nullopt and a finding if the sizes differ. Throws Error for other faults.
-std::optional<io::PicturePair> load_or_find(const io::FrameFiles& files, ExaminedPair& examined,
-                                            const Exec& exec) {
+std::optional<io::LoadedPair> load_or_find(const io::FrameFiles& files, ExaminedPair& examined,
+                                           const Exec& exec) {
   const fs::path& right_file = right_of(files);
   try {
-    io::PicturePair images = io::load_pair(files.left, right_file, exec.pool);
+    io::LoadedPair images = io::load_pair(files.left, right_file, exec.pool);
     examined.size = images.left.gray.size();
     return images;
   } catch (const Error&) {
@@ -111,7 +111,7 @@ void examine_rectification(ExaminedPair& examined) {
 
 ExaminedPair examine(const io::FrameFiles& files, const DoctorOptions& options, const Exec& exec) {
   ExaminedPair examined{files.name, {}, {}, {}, {}};
-  const std::optional<io::PicturePair> images = load_or_find(files, examined, exec);
+  const std::optional<io::LoadedPair> images = load_or_find(files, examined, exec);
   const io::Calibration calibration = calibration_or_find(files, options.input.calib, examined);
   if (!images) return examined;
   const Config config = resolve(options.input.config, calibration.num_disparities).config;
@@ -146,7 +146,7 @@ struct Diagnosis {
   std::size_t pairs_in_all = 0;
   std::vector<ExaminedPair> pairs;
   std::vector<std::size_t> indices;  // index in the folder of each pair
-  LeftOut left_out;                  // pairs with unusable files
+  SkippedFiles left_out;             // pairs with unusable files
   std::optional<Sequence> sequence;
   std::vector<Finding> findings;
 };
@@ -167,7 +167,7 @@ std::optional<Finding> find_sizes(const std::vector<ExaminedPair>& pairs) {
 }
 
 /// nullopt if it is unusable, which ends the consecutive pairs.
-std::optional<io::PicturePair> load_if_possible(const io::FrameFiles& files, const Exec& exec) {
+std::optional<io::LoadedPair> load_if_possible(const io::FrameFiles& files, const Exec& exec) {
   try {
     return io::load_pair(files.left, right_of(files), exec.pool);
   } catch (const Error&) {
@@ -177,19 +177,19 @@ std::optional<io::PicturePair> load_if_possible(const io::FrameFiles& files, con
 
 /// Consecutive usable pairs of one size, from `first` on.
 Sequence sequence_from(std::size_t first, const std::vector<io::FrameFiles>& frames, const Exec& exec) {
-  std::vector<io::PicturePair> images;
+  std::vector<io::LoadedPair> images;
   std::vector<StereoPair> pairs;
   Sequence sequence;
   sequence.first = first;
   for (std::size_t i = first; i < std::min(frames.size(), first + kLongestSequence); ++i) {
-    std::optional<io::PicturePair> one = load_if_possible(frames[i], exec);
+    std::optional<io::LoadedPair> one = load_if_possible(frames[i], exec);
     if (!one) break;
     if (!images.empty() && one->left.gray.size() != images.front().left.gray.size()) break;
     images.push_back(std::move(*one));
     sequence.names.push_back(frames[i].name);
   }
   pairs.reserve(images.size());
-  for (const io::PicturePair& one : images) pairs.push_back(StereoPair::from(one.left.gray, one.right.gray));
+  for (const io::LoadedPair& one : images) pairs.push_back(StereoPair::from(one.left.gray, one.right.gray));
   sequence.synchrony = measure_synchrony(pairs, exec);
   sequence.finding = diagnose(sequence.synchrony, sequence.names);
   if (!sequence.finding) return sequence;
@@ -203,7 +203,7 @@ Sequence sequence_from(std::size_t first, const std::vector<io::FrameFiles>& fra
 Sequence telling_sequence(const std::vector<io::FrameFiles>& frames, const Exec& exec) {
   const std::size_t rest = frames.size() - std::min(frames.size(), kLongestSequence);
   const std::size_t count =
-      std::min(kMostSequences, (frames.size() + kLongestSequence - 1) / kLongestSequence);
+      std::min(kMaxSequences, (frames.size() + kLongestSequence - 1) / kLongestSequence);
   Sequence best = sequence_from(0, frames, exec);
   for (std::size_t k = 1; k < count && best.severity() < Severity::broken; ++k) {
     Sequence next = sequence_from(k * rest / (count - 1), frames, exec);
@@ -353,8 +353,8 @@ std::string histogram_text(const Histogram& histogram) {
   std::vector<std::string> rows{"rows off"};
   std::vector<std::string> counts{"points"};
   for (auto bin = first; bin != last; ++bin) {
-    const int at = static_cast<int>(bin - histogram.begin()) - RowAlignment::kMostBins;
-    const std::string beyond = std::abs(at) == RowAlignment::kMostBins ? " or more" : "";
+    const int at = static_cast<int>(bin - histogram.begin()) - RowAlignment::kMaxBins;
+    const std::string beyond = std::abs(at) == RowAlignment::kMaxBins ? " or more" : "";
     rows.push_back(text_of(at == 0 ? "%.0f" : "%+.0f", at) + beyond);
     counts.push_back(std::to_string(*bin));
   }
@@ -386,13 +386,13 @@ std::string findings_text(const Diagnosis& diagnosis) {
 
 /// A check that was not possible for some pairs.
 struct Omission {
-  NotChecked first;  // from the first of these pairs
+  SkippedCheck first;  // from the first of these pairs
   std::vector<std::size_t> pairs;
 };
 
 std::vector<Omission> omissions(const Diagnosis& diagnosis) {
   std::vector<Omission> all;
-  const auto add = [&](const NotChecked& one, std::size_t pair) {
+  const auto add = [&](const SkippedCheck& one, std::size_t pair) {
     const auto known =
         std::find_if(all.begin(), all.end(), [&](const Omission& o) { return o.first.check == one.check; });
     if (known != all.end()) {
@@ -402,16 +402,16 @@ std::vector<Omission> omissions(const Diagnosis& diagnosis) {
     }
   };
   for (std::size_t i = 0; i < diagnosis.pairs.size(); ++i) {
-    for (const NotChecked& one : diagnosis.pairs[i].not_checked) add(one, i);
+    for (const SkippedCheck& one : diagnosis.pairs[i].not_checked) add(one, i);
     if (!diagnosis.pairs[i].measures)
       add({"everything but the sizes", "the two images differ in size", false}, i);
   }
   const auto frames = diagnosis.sequence ? diagnosis.sequence->synchrony.frames : 1;
-  if (diagnosis.pairs_in_all == 1 || frames < Synchrony::kLeastFrames) {
+  if (diagnosis.pairs_in_all == 1 || frames < Synchrony::kMinFrames) {
     all.push_back({{"synchrony",
                     std::to_string(diagnosis.sequence ? frames : static_cast<int>(diagnosis.pairs_in_all)) +
                         (frames == 1 ? " pair" : " pairs") + " in a row, expected " +
-                        std::to_string(Synchrony::kLeastFrames),
+                        std::to_string(Synchrony::kMinFrames),
                     false},
                    {}});
   }

@@ -81,8 +81,8 @@ struct FrameScore {
 
 /// The time of each stage according to objects.json.
 std::vector<io::StageTime> load_times(const fs::path& objects_json) {
-  constexpr std::size_t kMost = std::size_t{256} << 20;
-  const std::string text = io::read_file(objects_json, kMost);
+  constexpr std::size_t kMax = std::size_t{256} << 20;
+  const std::string text = io::read_file(objects_json, kMax);
   try {
     const Json whole = Json::parse(text);
     const Json by_stage = whole.value("timings_ms", Json::object());
@@ -162,7 +162,7 @@ struct Scores {
   std::vector<FrameScore> frames;
   std::vector<std::string> without_result;  // frames in the truth only
   std::vector<std::string> without_truth;   // frames in the results only: KITTI has every other
-  LeftOut left_out;                         // frames with unusable files
+  SkippedFiles left_out;                    // frames with unusable files
   std::size_t results = 0;
   std::string remark;  // for stderr; usually empty
 };

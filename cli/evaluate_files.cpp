@@ -82,57 +82,58 @@ void require_equal_size(const fs::path& ours, Size our_size, const fs::path& the
               text(their_size));
 }
 
+namespace {
+
+/// Reads a map of the result or the truth, if there is one, and lets the page show it.
+template <class T, class Load>
+Image<T> shown_map(const std::optional<fs::path>& path, Load load, SizeCheck& check, View<const T>& shown) {
+  if (!path) return {};
+  Image<T> map = load(*path);
+  check(*path, map.size());
+  shown = map;
+  return map;
+}
+
+}  // namespace
+
 io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& truth) {
   SizeCheck check;
   io::PageFrame shown;
   shown.name = result.name;
-
-  Image<ObjectId> objects;
-  if (result.objects) {
-    objects = ours_of(io::load_labels(*result.objects));
-    check(*result.objects, objects.size());
-    shown.objects = objects;
-  }
-  Image<TruthId> true_objects;
-  if (truth.objects) {
-    true_objects = io::truth_ids(io::load_labels(*truth.objects));
-    check(*truth.objects, true_objects.size());
-    shown.true_objects = true_objects;
-  }
-  Image<float> disparity;
-  if (result.disparity) {
-    disparity = io::load_disparity(*result.disparity);
-    check(*result.disparity, disparity.size());
-    shown.disparity_px = disparity;
-  }
-  Image<float> true_disparity;
-  if (truth.disparity) {
-    true_disparity = io::load_disparity(*truth.disparity);
-    check(*truth.disparity, true_disparity.size());
-    shown.true_disparity_px = true_disparity;
-  }
-  Image<Reject> reject;
-  if (result.reject && result.disparity) {
-    reject = converted<Reject>(io::load_labels(*result.reject),
-                               [](std::uint16_t bits) { return static_cast<Reject>(bits); });
-    check(*result.reject, reject.size());
-    shown.reject = reject;
-  }
-  Image<float> confidence;
-  if (result.confidence && result.disparity) {
-    confidence = converted<float>(io::load_labels(*result.confidence),
-                                  [](std::uint16_t c) { return static_cast<float>(c & 0xff) / 255; });
-    check(*result.confidence, confidence.size());
-    shown.confidence = confidence;
-  }
-  Image<Space> space;
-  if (result.space) {
-    space = converted<Space>(io::load_labels(*result.space),
-                             [](std::uint16_t value) { return static_cast<Space>(value & 0xff); });
-    check(*result.space, space.size());
-    shown.space = space;
-  }
-  io::Picture left;
+  const std::optional<fs::path> none;
+  const auto objects = shown_map<ObjectId>(
+      result.objects, [](const fs::path& path) { return ours_of(io::load_labels(path)); }, check,
+      shown.objects);
+  const auto true_objects = shown_map<TruthId>(
+      truth.objects, [](const fs::path& path) { return io::truth_ids(io::load_labels(path)); }, check,
+      shown.true_objects);
+  const auto load_disparity = [](const fs::path& path) { return io::load_disparity(path); };
+  const auto disparity = shown_map<float>(result.disparity, load_disparity, check, shown.disparity_px);
+  const auto true_disparity =
+      shown_map<float>(truth.disparity, load_disparity, check, shown.true_disparity_px);
+  const auto reject = shown_map<Reject>(
+      result.disparity ? result.reject : none,
+      [](const fs::path& path) {
+        return converted<Reject>(io::load_labels(path),
+                                 [](std::uint16_t bits) { return static_cast<Reject>(bits); });
+      },
+      check, shown.reject);
+  const auto confidence = shown_map<float>(
+      result.disparity ? result.confidence : none,
+      [](const fs::path& path) {
+        return converted<float>(io::load_labels(path),
+                                [](std::uint16_t c) { return static_cast<float>(c & 0xff) / 255; });
+      },
+      check, shown.confidence);
+  const auto space = shown_map<ObstacleLabel>(
+      result.space,
+      [](const fs::path& path) {
+        return converted<ObstacleLabel>(io::load_labels(path), [](std::uint16_t value) {
+          return static_cast<ObstacleLabel>(value & 0xff);
+        });
+      },
+      check, shown.space);
+  io::LoadedImage left;
   if (const auto path = left_picture(truth.folder, result.name)) {
     left = io::load_picture(*path);
     check(*path, left.gray.size());
@@ -141,8 +142,8 @@ io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& t
   }
   if (result.json) {
     (void)io::load_confidences(*result.json);  // rejects a file that is no objects.json, with its name
-    constexpr std::size_t kMost = std::size_t{256} << 20;
-    shown.objects_json = io::read_file(*result.json, kMost);
+    constexpr std::size_t kMax = std::size_t{256} << 20;
+    shown.objects_json = io::read_file(*result.json, kMax);
   }
   return io::encode_frame(shown);
 }

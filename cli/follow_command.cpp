@@ -89,7 +89,7 @@ class FollowConsole : public live::Sink {
 };
 
 /// Why a run with a map has stored no landmark; empty if it has any.
-std::string no_landmark_text(const Landmarked& marked) {
+std::string no_landmark_text(const LandmarkUpdate& marked) {
   if (!marked.state.map.list.empty()) return {};
   std::string text = "no landmark stored";
   for (const auto& reason : kLandmarkRefusals) {

@@ -91,9 +91,10 @@ bool are_copies(const MapFile& file, const MapFile& other) {
 }
 
 /// Merges copies of one map by id and appearance, other maps by appearance and place.
-Merged merged_of(const LandmarkMap& map, const LandmarkMap& other, bool is_copy, const MapOptions& options) {
-  Merged merged = is_copy ? merge_copies(map, other, LandmarksConfig{})
-                          : merge(map, other, std::nullopt, LandmarksConfig{});
+MapMerge merged_of(const LandmarkMap& map, const LandmarkMap& other, bool is_copy,
+                   const MapOptions& options) {
+  MapMerge merged = is_copy ? merge_copies(map, other, LandmarksConfig{})
+                            : merge(map, other, std::nullopt, LandmarksConfig{});
   if (!merged.map_from_other) {
     throw Error(options.other + ": matches no place in " + options.file + " (" +
                 choice_name(merged.refusal, kRecognitionRefusals) + "), expected " +
@@ -123,7 +124,7 @@ int diff(const MapOptions& options) {
                by > 0 ? text_of("%.2f", by) : ""});
     ++changes;
   };
-  const Merged merged = merged_of(map, second, are_copies(file, other), options);
+  const MapMerge merged = merged_of(map, second, are_copies(file, other), options);
   const Pose pose = *merged.map_from_other;
   std::vector<LandmarkId> met;
   for (const Landmark& theirs : second.list) {
@@ -158,7 +159,7 @@ int merge_files(const MapOptions& options) {
   const MapFile other = MapFile::open(second_of(options), MapMode::read_only);
   if (options.output.empty()) throw Error("map merge: found no output file, expected -o FILE");
   if (fs::exists(options.output)) throw Error("-o " + options.output + ": already exists");
-  const Merged merged = merged_of(file.load(), other.load(), are_copies(file, other), options);
+  const MapMerge merged = merged_of(file.load(), other.load(), are_copies(file, other), options);
   const fs::path part = options.output + ".part";
   std::error_code unimportant;
   fs::remove(part, unimportant);

@@ -23,7 +23,7 @@ struct RectifyOptions {
   double nearest_m = 0;  // 0 = five baselines
 };
 
-void save(const fs::path& path, const io::Picture& picture) {
+void save(const fs::path& path, const io::LoadedImage& picture) {
   if (picture.rgb.empty()) {
     io::save_png(path, picture.gray.view());
   } else {
@@ -57,8 +57,8 @@ int rectify(const RectifyOptions& options) {
   const Progress progress(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
-    const io::PicturePair raw = io::load_pair(frames[i].left, right_of(frames[i]));
-    io::PicturePair rectified;
+    const io::LoadedPair raw = io::load_pair(frames[i].left, right_of(frames[i]));
+    io::LoadedPair rectified;
     try {
       rectified = rectify_pair(raw);
     } catch (const Error& error) {

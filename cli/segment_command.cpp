@@ -59,19 +59,20 @@ std::string interval_text(const std::optional<Interval>& i) {
 }
 
 /// "3 obstacles left out: 2 background, 1 low confidence; the nearest at …"; empty without any.
-std::string left_out_text(const std::vector<cairn::LeftOut>& left_out) {
+std::string left_out_text(const std::vector<cairn::SkippedFiles>& left_out) {
   if (left_out.empty()) return {};
   std::string text = std::to_string(left_out.size()) +
                      (left_out.size() == 1 ? " obstacle is not an object:" : " obstacles are not objects:");
   const char* between = " ";
   for (const auto& reason : kLeftOutReasons) {
-    const auto count = std::count_if(left_out.begin(), left_out.end(),
-                                     [&](const cairn::LeftOut& left) { return left.reason == reason.value; });
+    const auto count = std::count_if(left_out.begin(), left_out.end(), [&](const cairn::SkippedFiles& left) {
+      return left.reason == reason.value;
+    });
     if (count == 0) continue;
     text += between + std::to_string(count) + " " + std::string(reason.name);
     between = ", ";
   }
-  const cairn::LeftOut& nearest = left_out.front();
+  const cairn::SkippedFiles& nearest = left_out.front();
   text += "; the nearest, " + std::to_string(nearest.pixel_count) + " px, ";
   text += nearest.position_in_camera_m ? text_of("%.2f m away", double(nearest.position_in_camera_m->z))
                                        : text_of("at %.1f px of disparity", double(nearest.disparity_px));
@@ -130,7 +131,7 @@ struct Report {
 };
 
 /// The number of doubtful frames per run to diagnose, each of which takes as long as segmenting one.
-constexpr std::size_t kMostMeasured = 5;
+constexpr std::size_t kMaxMeasured = 5;
 
 constexpr const char* kPageName = "segment.html";
 
@@ -181,9 +182,16 @@ LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, con
 }
 
 /// Processes one frame, from its images to its results.
-Report work_on(LoadedFrame loaded, const io::FrameFiles& files, std::optional<std::int64_t> stamp_ns,
-               const SegmentOptions& options, const fs::path& folder, bool one_of_many, bool may_measure,
-               Exec& exec) {
+struct FrameTask {
+  const io::FrameFiles& files;
+  std::optional<std::int64_t> stamp_ns;
+  const fs::path& folder;  // of its result; may be empty
+  bool one_of_many = false;
+  bool may_measure = false;  // its images, if the result is doubtful
+};
+
+Report work_on(LoadedFrame loaded, const FrameTask& task, const SegmentOptions& options, Exec& exec) {
+  const auto& [files, stamp_ns, folder, one_of_many, may_measure] = task;
   Report report;
   report.remark = remark_on_calibration(loaded);
   const Stopwatch watch(exec);
@@ -285,7 +293,7 @@ Outcome segment_all(const SegmentOptions& options) {
   PassingFindings findings;
   std::size_t doubtful = 0;
   bool is_any_broken = false;  // any of the doubtful ones
-  LeftOut left_out;
+  SkippedFiles left_out;
   Totals totals;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
@@ -301,8 +309,8 @@ Outcome segment_all(const SegmentOptions& options) {
       continue;
     }
     try {
-      Report report = work_on(std::move(*loaded), frames[i], stamps[i], options, folder, many,
-                              doubtful < kMostMeasured, exec);
+      const FrameTask task{frames[i], stamps[i], folder, many, doubtful < kMaxMeasured};
+      Report report = work_on(std::move(*loaded), task, options, exec);
       if (options.html) encoded.push_back(std::move(report.frame));
       totals += report.totals;
       progress.clear();
@@ -310,7 +318,7 @@ Outcome segment_all(const SegmentOptions& options) {
       std::cerr << report.note;
       if (report.is_doubtful) {
         is_any_broken = is_any_broken || is_broken(report.findings);
-        if (++doubtful > kMostMeasured && is_any_broken) findings.add_doubtful();
+        if (++doubtful > kMaxMeasured && is_any_broken) findings.add_doubtful();
       }
       findings.add(frames[i].name, std::move(report.findings));
       std::cout << report.out << std::flush;

@@ -282,14 +282,23 @@ MovingErrors moving_errors(const std::vector<Pair>& pairs, const io::TrueSequenc
   return errors;
 }
 
-LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceScores& scores) {
-  /// A stay of an object in view, with no gap of kOutOfView frames.
-  struct Stretch {
-    std::int64_t last = 0;
-    std::int64_t frames = 0;
-    std::map<std::int64_t, int> landmarks;  // number of frames for each landmark that its track has
-  };
-  std::map<std::int64_t, std::vector<Stretch>> objects;
+namespace {
+
+/// A stay of an object in view, with no gap of kOutOfView frames.
+struct Stretch {
+  std::int64_t last = 0;
+  std::int64_t frames = 0;
+  std::map<std::int64_t, int> landmarks;  // number of frames for each landmark that its track has
+  [[nodiscard]] std::int64_t most_frequent() const {
+    return std::max_element(landmarks.begin(), landmarks.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+  }
+};
+using Stays = std::map<std::int64_t, std::vector<Stretch>>;  // of each object
+
+Stays stays_of(const std::vector<Pair>& pairs, const SequenceScores& scores) {
+  Stays objects;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     for (const std::int64_t id : scores.scored[k].truth) {
       std::vector<Stretch>& stretches = objects[id];
@@ -298,23 +307,11 @@ LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceSco
       ++stretches.back().frames;
     }
   }
-  LandmarkErrors errors;
-  each_match(pairs, scores.scored, [&](const Pair& pair, std::int64_t id, const io::TrackRecord& track) {
-    if (!track.landmark) return;
-    errors.is_known = true;
-    for (Stretch& stretch : objects.at(id)) {
-      if (pair.index <= stretch.last) {
-        ++stretch.landmarks[*track.landmark];
-        return;
-      }
-    }
-  });
-  const auto most_frequent = [](const Stretch& stretch) {
-    return std::max_element(stretch.landmarks.begin(), stretch.landmarks.end(),
-                            [](const auto& a, const auto& b) { return a.second < b.second; })
-        ->first;
-  };
-  // A landmark belongs to the object that had it for the most frames of its first stay with landmarks.
+  return objects;
+}
+
+/// The object of each landmark: that which had it for the most frames of its first stay with landmarks.
+std::map<std::int64_t, std::pair<std::int64_t, int>> owners_of(const Stays& objects) {
   std::map<std::int64_t, std::pair<std::int64_t, int>> owner;
   for (const auto& [id, stretches] : objects) {
     for (const Stretch& stretch : stretches) {
@@ -326,19 +323,38 @@ LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceSco
       break;
     }
   }
+  return owner;
+}
+
+}  // namespace
+
+LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceScores& scores) {
+  Stays objects = stays_of(pairs, scores);
+  LandmarkErrors errors;
+  each_match(pairs, scores.scored, [&](const Pair& pair, std::int64_t id, const io::TrackRecord& track) {
+    if (!track.landmark) return;
+    errors.is_known = true;
+    for (Stretch& stretch : objects.at(id)) {
+      if (pair.index <= stretch.last) {
+        ++stretch.landmarks[*track.landmark];
+        return;
+      }
+    }
+  });
+  const auto owner = owners_of(objects);
   for (const auto& [id, stretches] : objects) {
     std::optional<std::int64_t> known;
     for (const Stretch& stretch : stretches) {
       if (known && stretch.frames >= kInViewAgain) {
         ++errors.again;
         if (!stretch.landmarks.empty()) {
-          const std::int64_t now = most_frequent(stretch);
+          const std::int64_t now = stretch.most_frequent();
           errors.re_identified += stretch.landmarks.contains(*known) ? 1 : 0;
           const auto whose = owner.find(now);
           errors.wrong += whose != owner.end() && whose->second.first != id ? 1 : 0;
         }
       }
-      if (!known && !stretch.landmarks.empty()) known = most_frequent(stretch);
+      if (!known && !stretch.landmarks.empty()) known = stretch.most_frequent();
     }
   }
   return errors;

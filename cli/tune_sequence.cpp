@@ -19,10 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostFrames = 300;  // held in memory
-constexpr std::size_t kFewestFrames = 10;
+constexpr std::size_t kMaxFrames = 300;  // held in memory
+constexpr std::size_t kMinFrames = 10;
 /// A smaller gain, or one below two standard errors, does not count.
-constexpr Margin kLeastGain{.least_share = 0.05, .standard_errors = 2};
+constexpr Margin kMinGain{.least_share = 0.05, .standard_errors = 2};
 
 struct SteadinessRun {
   std::vector<float> frames;  // for each frame but the first
@@ -39,20 +39,20 @@ std::string text(double steadiness) {
 
 std::vector<io::SequenceFrame> held_frames(io::Sequence& source, const std::string& name) {
   std::vector<io::SequenceFrame> frames;
-  while (frames.size() < kMostFrames) {
+  while (frames.size() < kMaxFrames) {
     std::optional<io::SequenceFrame> frame = source.next();
     if (!frame) break;
     frames.push_back(std::move(*frame));
   }
-  if (frames.size() < kFewestFrames) {
+  if (frames.size() < kMinFrames) {
     throw Error(name + ": has " + std::to_string(frames.size()) + " frames, expected " +
-                std::to_string(kFewestFrames) + " or more to judge steadiness");
+                std::to_string(kMinFrames) + " or more to judge steadiness");
   }
   return frames;
 }
 
 /// The steadiness of the frames tuned on and of those held out.
-struct Compared {
+struct Comparison {
   SteadinessRun before;
   SteadinessRun best;
   std::size_t tuned_on = 0;
@@ -65,7 +65,7 @@ struct Compared {
   }
 };
 
-void print(const Compared& runs, const SearchResult& found) {
+void print(const Comparison& runs, const SearchResult& found) {
   std::cout << "steadiness: " << text(runs.before.mean(0, runs.tuned_on)) << " before, "
             << text(runs.best.mean(0, runs.tuned_on)) << " after";
   if (runs.tuned_on < runs.count()) {
@@ -89,7 +89,7 @@ SearchConfig search_config(const TuneSequenceOptions& options, const std::vector
                            const Config& start) {
   SearchConfig config;
   config.seed = options.seed;
-  config.margin = kLeastGain;
+  config.margin = kMinGain;
   if (options.evaluations > 0) config.evaluations = options.evaluations;
   config.is_read = [&](const std::vector<Setting>& settings, std::size_t i) {
     const std::vector<OptionInfo> active = active_options(with_settings(start, settings));
@@ -97,6 +97,68 @@ SearchConfig search_config(const TuneSequenceOptions& options, const std::vector
                        [&](const OptionInfo& option) { return option.name == tried[i].name; });
   };
   return config;
+}
+
+/// Runs of the sequence with different settings.
+class SequenceTrials {
+ public:
+  SequenceTrials(const std::vector<io::SequenceFrame>& frames, const FollowConfig& start,
+                 const std::optional<StereoRig>& rig, const Exec& exec, double seconds,
+                 const std::function<bool()>& stop)
+      : frames_(frames), start_(start), rig_(rig), exec_(exec), limit_s_(seconds), stop_(stop) {}
+
+  /// nullopt if the time is up or the user stopped; without frames if the settings were refused.
+  std::optional<SteadinessRun> operator()(const std::vector<Setting>& settings) {
+    FollowConfig config = start_;
+    config.segmentation = with_settings(start_.segmentation, settings);
+    Follower follower(config, rig_, exec_);
+    SteadinessRun steady;
+    for (const io::SequenceFrame& frame : frames_) {
+      if (stop_() || (tried_ > 0 && seconds() > limit_s_)) {
+        is_up_ = true;
+        return std::nullopt;
+      }
+      try {
+        const TrackedFrame step =
+            follower.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp);
+        if (step.index > 0) steady.frames.push_back(step.reliability.steadiness);
+      } catch (const Error&) {  // settings that contradict each other or the images
+        if (tried_ == 0) throw;
+        steady.frames.clear();
+        break;
+      }
+    }
+    ++tried_;
+    return steady;
+  }
+
+  [[nodiscard]] int tried() const { return tried_; }
+  [[nodiscard]] bool is_up() const { return is_up_; }
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(Clock::now() - began_).count();
+  }
+
+ private:
+  const std::vector<io::SequenceFrame>& frames_;
+  const FollowConfig& start_;
+  const std::optional<StereoRig>& rig_;
+  const Exec& exec_;
+  double limit_s_;
+  const std::function<bool()>& stop_;
+  Clock::time_point began_ = Clock::now();
+  int tried_ = 0;
+  bool is_up_ = false;
+};
+
+void write(const Comparison& runs, const SearchResult& found, const ResolvedConfig& base,
+           const std::string& file) {
+  const double reference = runs.before.mean(0, runs.tuned_on);
+  const double after = runs.is_luck() ? reference : runs.best.mean(0, runs.tuned_on);
+  io::write_file(
+      file, "# Written by cairn tune --sequence: steadiness " + text(reference) + " before, " + text(after) +
+                " after.\n" +
+                io::changed_config_yaml(base.preset, with_settings(base.config, runs.kept(found))));
+  std::cout << "wrote " << file << ", for --config\n";
 }
 
 }  // namespace
@@ -118,35 +180,9 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   const std::size_t count = frames.size() - 1;  // the first frame has no predecessor
   const auto tuned_on = count - static_cast<std::size_t>(share * static_cast<double>(count));
 
-  const auto began = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
   const Progress progress(frames.size());
-  int tried = 0;
-  bool is_up = false;
-  const auto run = [&](const std::vector<Setting>& settings) -> std::optional<SteadinessRun> {
-    FollowConfig config = start;
-    config.segmentation = with_settings(start.segmentation, settings);
-    Follower follower(config, source->rig(), exec);
-    SteadinessRun steady;
-    for (const io::SequenceFrame& frame : frames) {
-      if (stop() || (tried > 0 && seconds() > options.seconds)) {
-        is_up = true;
-        return std::nullopt;
-      }
-      try {
-        const Step step =
-            follower.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp);
-        if (step.index > 0) steady.frames.push_back(step.reliability.steadiness);
-      } catch (const Error&) {  // settings that contradict each other or the images
-        if (tried == 0) throw;
-        steady.frames.clear();
-        break;
-      }
-    }
-    ++tried;
-    return steady;
-  };
-
+  const std::optional<StereoRig> rig = source->rig();
+  SequenceTrials run(frames, start, rig, exec, options.seconds, stop);
   const std::vector<Tunable> options_tried =
       tunables(options.patterns.empty() ? usual_tunables(start.segmentation, true) : options.patterns,
                start.segmentation);
@@ -167,9 +203,9 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   const SearchResult found = search(
       options_tried, from,
       [&](const std::vector<Setting>& settings) -> std::optional<std::vector<Loss>> {
-        progress.bar(std::min(1.0, seconds() / options.seconds),
-                     std::to_string(tried) + " tried, steadiness " + text(best.mean(0, tuned_on)) + " (was " +
-                         text(reference) + ")");
+        progress.bar(std::min(1.0, run.seconds() / options.seconds),
+                     std::to_string(run.tried()) + " tried, steadiness " + text(best.mean(0, tuned_on)) +
+                         " (was " + text(reference) + ")");
         std::optional<SteadinessRun> steady = settings == from ? before : run(settings);
         if (!steady) return std::nullopt;
         latest = std::move(*steady);
@@ -179,16 +215,12 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
       [&](const std::vector<Setting>&) { best = latest; });
   progress.clear();
 
-  const Compared runs{*before, best, tuned_on};
+  const Comparison runs{*before, best, tuned_on};
   std::cout << count_of(frames.size(), "frame") << ", " << count_of(options_tried.size(), "option") << ", "
-            << tried << " runs in " << text_of("%.1f s", seconds()) << (is_up ? ", stopped\n" : "\n");
+            << run.tried() << " runs in " << text_of("%.1f s", run.seconds())
+            << (run.is_up() ? ", stopped\n" : "\n");
   print(runs, found);
-  const double after = runs.is_luck() ? reference : best.mean(0, tuned_on);
-  io::write_file(options.output,
-                 "# Written by cairn tune --sequence: steadiness " + text(reference) + " before, " +
-                     text(after) + " after.\n" +
-                     io::changed_config_yaml(base.preset, with_settings(base.config, runs.kept(found))));
-  std::cout << "wrote " << options.output << ", for --config\n";
+  write(runs, found, base, options.output);
   return 0;
 }
 

@@ -103,25 +103,25 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
 
   // Disparities supported by texture show the scene: its ground, reflections in it, its walls.
   const LeftImage left{pair.left(), pair.left_rgb(), noise_sigma(pair.left(), exec)};
-  const Image<float> evidence_px = find_evidence(left, disparity, config.evidence, exec);
-  const Ground seen = fit_ground(evidence_px, rig, config.ground, exec, pair.left());
-  const Ground ground = likely_ground(seen, disparity, rig, config.ground, exec, evidence_px, pair.left());
+  const Image<float> textured_px = select_textured(left, disparity, config.textured, exec);
+  const Ground seen = fit_ground(textured_px, rig, config.ground, exec, pair.left());
+  const Ground ground = likely_ground(seen, disparity, rig, config.ground, exec, textured_px, pair.left());
   disparity = reject_below_ground(std::move(disparity), ground, rig, config.ground, exec);
   disparity = reject_speckles(std::move(disparity), config.speckle, exec);
-  const Background background = fit_background(evidence_px, ground, rig, config.background, exec);
-  const Image<float> seen_px = floor_under_reflections(disparity, ground, exec);
+  const Background background = fit_background(textured_px, ground, rig, config.background, exec);
+  const Image<float> surface_disparity_px = floor_under_reflections(disparity, ground, exec);
 
   // Superpixels, a network's hints for them, and a tree of regions: the most similar pair merges first.
-  const Superpixels superpixels = cut_superpixels(left, seen_px, config.superpixels, exec);
-  Cues cues{left, seen_px, evidence_px, ground, background};
+  const Superpixels superpixels = cut_superpixels(left, surface_disparity_px, config.superpixels, exec);
+  Cues cues{left, surface_disparity_px, textured_px, ground, background};
   const Image<ObjectHint> hints = hint_objects(superpixels.edges, cues, exec);
   cues.hints = hints;
-  const MergeTree tree = grow_merge_tree(superpixels, cues, same_thing_trees(), exec);
+  const MergeTree tree = grow_merge_tree(superpixels, cues, merge_classifier(), exec);
 
   // Choose the regions that are objects, and measure them; then estimate the confidence of each disparity.
   const ChosenObjects chosen =
-      choose_objects(tree, whole_object_trees(), limits_of(config.objects, pair.size()), exec);
-  const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
+      choose_objects(tree, object_classifier(), limits_of(config.objects, pair.size()), exec);
+  const Segmentation groups = object_regions(superpixels, chosen, disparity, exec);
   Objects objects = measure(groups.labels, chosen.scores, disparity, left, exec);
   objects =
       refine_objects(std::move(objects), disparity, pair.left(), pair.right(), disparity_bias_trees(), exec);

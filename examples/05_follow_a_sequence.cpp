@@ -18,7 +18,7 @@ int main(int argc, char** argv) try {
 
   while (const auto frame = sequence->next()) {
     const auto pair = cairn::StereoPair::from(frame->left.gray, frame->right, frame->left.rgb);
-    const cairn::Step step = follower.next(pair, frame->stamp);
+    const cairn::TrackedFrame step = follower.next(pair, frame->stamp);
     const cairn::Point3 camera = step.map_from_camera.translation_m;
     std::printf("%s: camera at %.2f, %.2f m\n", frame->name.c_str(), camera.x, camera.y);
     for (const cairn::Track& track : step.tracks.list) {

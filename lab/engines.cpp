@@ -72,7 +72,7 @@ constexpr std::array kFolders{std::pair{"Motorcycle", "real/middlebury2014/Motor
 std::vector<Scene> load_scenes(const std::filesystem::path& data) {
   std::vector<Scene> scenes;
   for (const auto& [name, folder] : kFolders) {
-    const io::PicturePair images = io::load_pair(data / folder / "left.png", data / folder / "right.png");
+    const io::LoadedPair images = io::load_pair(data / folder / "left.png", data / folder / "right.png");
     for (const auto& [size, num_disparities] : kExtents) {
       const Image<Rgb>& rgb = images.left.rgb;
       scenes.push_back({name, num_disparities, resized(images.left.gray, size),

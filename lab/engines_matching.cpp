@@ -137,7 +137,7 @@ Run complete_on(const Scene& scene, Gray (*pixel)(std::mt19937&)) {
       std::generate_n(image->row(y), image->width(), [&] { return pixel(random); });
     }
   }
-  return [other, run = complete(*other, LeftRightMethod::true_)] { run(); };
+  return [other, run = complete(*other, LeftRightMethod::right_winner)] { run(); };
 }
 
 void add_engines(Registry& all) {
@@ -148,11 +148,11 @@ void add_engines(Registry& all) {
   add("SAD, AVX2", [](const Scene& s) { return winner(s, kSobelSad, one_thread(Target::avx2)); });
   add("SAD, two threads", [](const Scene& s) { return winner(s, kSobelSad, two_threads()); });
   add("SAD complete, vote", [](const Scene& s) { return complete(s, LeftRightMethod::vote); });
-  add("SAD complete, true", [](const Scene& s) { return complete(s, LeftRightMethod::true_); });
+  add("SAD complete, true", [](const Scene& s) { return complete(s, LeftRightMethod::right_winner); });
   add("SAD complete, vote, two threads",
       [](const Scene& s) { return complete(s, LeftRightMethod::vote, two_threads()); });
   add("SAD complete, true, two threads",
-      [](const Scene& s) { return complete(s, LeftRightMethod::true_, two_threads()); });
+      [](const Scene& s) { return complete(s, LeftRightMethod::right_winner, two_threads()); });
   add("SAD complete, black",
       [](const Scene& s) { return complete_on(s, [](std::mt19937&) { return Gray{0}; }); });
   add("SAD complete, noise", [](const Scene& s) {
@@ -288,7 +288,7 @@ std::string accuracy_section(const std::filesystem::path& data, const std::vecto
         return disparity_errors(disparity_px, frame.truth_px, frame.hidden, match.num_disparities);
       };
       const DisparityMap ours =
-          match_and_check(pair, complete_config(match, LeftRightMethod::true_), one_thread());
+          match_and_check(pair, complete_config(match, LeftRightMethod::right_winner), one_thread());
       const Image<float> theirs = block_matched(pair, match.num_disparities, kWindow);
       ours_bad.push_back(errors(ours.disparity_px).bad_of_matched(kBad2));
       ours_density.push_back(errors(ours.disparity_px).density());
@@ -326,7 +326,7 @@ std::string steadiness_section(const std::filesystem::path&, const std::vector<S
                        "p99 / median of StereoBM full, interleaved", "p99 / median of memcpy"});
   for (const Scene& scene : scenes) {
     if (scene.extent() != "640x480x64") continue;
-    const std::array<Run, 3> runs{complete(scene, LeftRightMethod::true_),
+    const std::array<Run, 3> runs{complete(scene, LeftRightMethod::right_winner),
                                   engine_named("StereoBM full").prepare(scene), copying(scene)};
     std::array<std::vector<double>, 3> times;
     for (int i = 0; i < kFrames; ++i) {

@@ -29,7 +29,7 @@ WIDTH, HEIGHT = 160, 120  # cells of the canvas that frames are fitted on
 CHANNELS = 12
 FIRST, SECOND, THIRD, LAST = 16, 40, 48, 32  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
 UNIT = 64  # scale of the input
-GREATEST = 8191  # activation: kGreatestActivation
+GREATEST = 8191  # activation: kMaxActivation
 # Outputs: log-odds of an object and of an outline, quantised to 1/16; offset to the centre in units of 16 cells,
 # quantised to 1/8 cell; log₂ of the size, quantised to 1/16.
 STEPS_PER_UNIT = [16, 16, 128, 128, 16]

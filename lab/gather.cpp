@@ -29,11 +29,11 @@
 namespace cairn::report {
 namespace {
 
-constexpr double kLeastArea = 0.0015;  // share of the image; candidate regions
-constexpr double kMostArea = 0.7;
+constexpr double kMinArea = 0.0015;  // share of the image; candidate regions
+constexpr double kMaxArea = 0.7;
 constexpr float kBothBackground =
     0.3F;  // weight of pairs that are both background: the truth does not separate its surfaces
-constexpr float kLeastPurity = 0.1F;
+constexpr float kMinPurity = 0.1F;
 
 /// Fitted trees in a file: base, numbers of roots and nodes; the roots; one node per line.
 std::shared_ptr<const FittedTrees> load_trees(const std::string& path) {
@@ -52,9 +52,9 @@ std::shared_ptr<const FittedTrees> load_trees(const std::string& path) {
 
 /// Models by file name, each read once; `-` is the library's.
 template <class T>
-class Fitted {
+class FittedCache {
  public:
-  explicit Fitted(std::shared_ptr<const T> (*load)(const std::string& path)) : load_(load) {}
+  explicit FittedCache(std::shared_ptr<const T> (*load)(const std::string& path)) : load_(load) {}
   const T& at(const std::string& path, const T& of_the_library) {
     if (path == "-") return of_the_library;
     std::shared_ptr<const T>& known = known_[path];
@@ -202,7 +202,7 @@ void record_pairs(std::ofstream& file, int job, const std::vector<Pair>& pairs, 
       if (truth.partial()) continue;  // both may belong to unlabelled objects
       purity *= kBothBackground;
     }
-    if (purity >= kLeastPurity) record(file, job, a == b ? 1.0F : 0.0F, purity, pair.features);
+    if (purity >= kMinPurity) record(file, job, a == b ? 1.0F : 0.0F, purity, pair.features);
   }
 }
 
@@ -211,7 +211,7 @@ void record_regions(std::ofstream& file, int job, const MergeTree& tree, const T
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const MergeNode& node = tree.nodes[i];
     const auto area = static_cast<double>(node.area);
-    if (area < kLeastArea * image || area > kMostArea * image) continue;
+    if (area < kMinArea * image || area > kMaxArea * image) continue;
     if (2 * truth.known(i) < node.area) continue;
     const float iou = truth.best_iou(i);
     // An unlabelled region may be an object.
@@ -273,14 +273,23 @@ void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, co
             << phantoms << " =" << ious.str() << " =" << scores.str() << ' ' << milliseconds << '\n';
 }
 
-void work(int job, const std::string& folder, bool grey, const HintNetwork& network,
-          const FittedTrees& same_thing, const FittedTrees& whole_object, float min_score, Files& files) {
+struct Job {
+  int number = 0;
+  std::string folder;
+  bool grey = false;
+  const HintNetwork& network;
+  const FittedTrees& same_thing;
+  const FittedTrees& whole_object;
+};
+
+void work(const Job& of, float min_score, Files& files) {
+  const auto& [job, folder, grey, network, same_thing, whole_object] = of;
   const TrueFrame frame = load_true_frame(io::find_frames(folder).front());
   Config config;
   config.match.num_disparities = frame.num_disparities;
   const Exec exec;
   const View<const Gray> left = frame.images.left.gray;
-  Observed stage(exec);
+  StageClock stage(exec);
   FrameInput in{{left, grey ? View<const Rgb>{} : frame.images.left.rgb.view()}, frame.images.right.gray};
   RegionCandidates cut = superpixel_candidates(in, {frame.rig, config, exec}, nullptr, stage);
   const Superpixels& superpixels = cut.superpixels;
@@ -304,7 +313,7 @@ void work(int job, const std::string& folder, bool grey, const HintNetwork& netw
   if (files.regions.is_open()) record_regions(files.regions, job, tree, truth, left.size());
   if (files.bias.is_open() && !frame.truth_px.empty() && !frame.partial && frame.rig) {
     const DisparityMap& disparity = cut.match.stereo.disparity;
-    const Segmentation groups = groups_of(superpixels, chosen, disparity, exec);
+    const Segmentation groups = object_regions(superpixels, chosen, disparity, exec);
     const Objects objects = measure(groups.labels, chosen.scores, disparity, in.left, exec);
     record_bias(files.bias, job, frame, objects, disparity, in.right, exec);
   }
@@ -341,17 +350,17 @@ int run(std::span<char*> arguments) {
     if (option == "--min-score") min_score = std::stof(value);
   }
   std::ifstream jobs(arguments[1]);
-  Fitted<FittedTrees> trees(load_trees);
-  Fitted<HintNetwork> networks(load_network);
+  FittedCache<FittedTrees> trees(load_trees);
+  FittedCache<HintNetwork> networks(load_network);
   std::string folder;
   std::string colour;
   std::string hints;
   std::string same_thing;
   std::string whole_object;
   for (int job = 0; jobs >> folder >> colour >> hints >> same_thing >> whole_object; ++job) {
-    work(job, folder, colour == "grey", networks.at(hints, hint_network()),
-         trees.at(same_thing, same_thing_trees()), trees.at(whole_object, whole_object_trees()), min_score,
-         files);
+    work({job, folder, colour == "grey", networks.at(hints, hint_network()),
+          trees.at(same_thing, merge_classifier()), trees.at(whole_object, object_classifier())},
+         min_score, files);
   }
   return 0;
 }

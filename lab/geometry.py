@@ -208,7 +208,7 @@ def fit_sigma(signs, errors):
 
 
 def fit_middle(rows):
-    """The numbers of sight() in cairn/sequence/sight.cpp before they are widened: standard deviations of an object's position
+    """The numbers of sight() in cairn/sequence/detect.cpp before they are widened: standard deviations of an object's position
     against the mean point of its visible part, across the ray by width and height and along it. The likeliest scales of
     Student's t with 3 degrees of freedom, since a few masks miss half of an object."""
     off_x, off_y, off_z, pixel, width, height, depth, odds, sigma_z = np.array(rows, float).T

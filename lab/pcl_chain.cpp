@@ -206,12 +206,12 @@ Image<ObjectId> clusters(const Points& points, Size size, const Settings& settin
 }
 
 /// The last matching result of a frame: most settings only change later steps.
-struct MatchedOnce {
+struct MatchResult {
   std::array<double, 6> by{};
   Image<float> disparity_px;
 };
 
-report::Score score(const report::TrueFrame& frame, const Settings& s, MatchedOnce& matched_once) {
+report::Score score(const report::TrueFrame& frame, const Settings& s, MatchResult& matched_once) {
   const std::array<double, 6> by{s.block_size, s.p1, s.p2, s.uniqueness, s.speckle_size, s.speckle_range};
   if (!frame.rig)
     throw Error(frame.name + ": found no focal length and baseline, expected both in calib.txt");
@@ -225,7 +225,7 @@ report::Score score(const report::TrueFrame& frame, const Settings& s, MatchedOn
   return result;
 }
 
-report::SearchProgram search_chain(std::map<const report::TrueFrame*, MatchedOnce>& matched_once,
+report::SearchProgram search_chain(std::map<const report::TrueFrame*, MatchResult>& matched_once,
                                    std::mutex& guard) {
   report::SearchProgram program{"pcl_chain", {}, {}, {}};
   for (const ChainKnob& knob : chain_knobs()) {
@@ -233,7 +233,7 @@ report::SearchProgram search_chain(std::map<const report::TrueFrame*, MatchedOnc
     program.start.emplace_back(knob.usual);
   }
   program.score = [&](const report::TrueFrame& frame, const report::Values& values, const Exec&) {
-    MatchedOnce* known = nullptr;
+    MatchResult* known = nullptr;
     {
       const std::lock_guard lock(guard);
       known = &matched_once[&frame];
@@ -249,7 +249,7 @@ Way chain(const char* ChainKnob::*which) {
   report::Values values;
   for (const ChainKnob& knob : chain_knobs()) values.emplace_back(knob.*which);
   return [settings = settings_of(values)](const report::TrueFrame& frame, const Exec&) {
-    MatchedOnce none;
+    MatchResult none;
     return score(frame, settings, none);
   };
 }
@@ -309,7 +309,7 @@ void run(std::vector<std::string> arguments) {
   report::set_opencv_threads(1);
   if (!arguments.empty() && arguments[0] == "--search") {
     arguments.erase(arguments.begin());
-    std::map<const report::TrueFrame*, MatchedOnce> matched_once;
+    std::map<const report::TrueFrame*, MatchResult> matched_once;
     std::mutex guard;
     report::run_search(search_chain(matched_once, guard), arguments);
     return;

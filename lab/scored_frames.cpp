@@ -48,7 +48,7 @@ std::vector<TrueFrame> load_true_frames(const std::filesystem::path& folder) {
 
 Frame segment_frame(const TrueFrame& frame, Config config, bool grey, const Exec& exec) {
   config.match.num_disparities = frame.num_disparities;
-  const io::Picture& left = frame.images.left;
+  const io::LoadedImage& left = frame.images.left;
   const View<const Rgb> colour = grey ? View<const Rgb>{} : left.rgb.view();
   return segment(StereoPair::from(left.gray, frame.images.right.gray, colour), frame.rig, config, exec);
 }

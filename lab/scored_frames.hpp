@@ -20,7 +20,7 @@ namespace cairn::report {
 
 struct TrueFrame {
   std::string name;
-  io::PicturePair images;
+  io::LoadedPair images;
   std::optional<StereoRig> rig;
   int num_disparities = 64;
   Image<TruthId> objects;      // empty if unknown

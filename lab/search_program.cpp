@@ -30,7 +30,7 @@ std::vector<FrameSet> load(const fs::path& data, const std::vector<Source>& sour
   return sets;
 }
 
-struct Measured {
+struct SetScores {
   std::vector<ObjectSummary> sets;
   ObjectSummary all;
   [[nodiscard]] double value() const {
@@ -39,9 +39,9 @@ struct Measured {
   }
 };
 
-Measured measure(const SearchProgram& program, const std::vector<FrameSet>& sets, const Values& values,
-                 int threads) {
-  Measured measured;
+SetScores measure(const SearchProgram& program, const std::vector<FrameSet>& sets, const Values& values,
+                  int threads) {
+  SetScores measured;
   std::vector<FrameObjects> all;
   for (const FrameSet& set : sets) {
     std::vector<FrameObjects> objects(set.frames.size());
@@ -66,7 +66,7 @@ void print(const std::string& name, const ObjectSummary& sum) {
   std::fflush(stdout);
 }
 
-void print(const std::vector<FrameSet>& sets, const Measured& measured) {
+void print(const std::vector<FrameSet>& sets, const SetScores& measured) {
   for (std::size_t i = 0; i < sets.size(); ++i) print(sets[i].name, measured.sets[i]);
   print("together", measured.all);
 }
@@ -82,7 +82,7 @@ Values search(const SearchProgram& program, const std::vector<FrameSet>& fit, Va
   double best_value = effort.draws > 0 ? measure(program, fit, start, threads).value() : 0;
   for (int i = 0; i < effort.draws; ++i) {
     const Values values = drawn(program.knobs, random);
-    const Measured measured = measure(program, fit, values, threads);
+    const SetScores measured = measure(program, fit, values, threads);
     if (measured.value() <= best_value) continue;
     best_value = measured.value();
     start = values;
@@ -90,7 +90,7 @@ Values search(const SearchProgram& program, const std::vector<FrameSet>& fit, Va
     print("", measured.all);
   }
   int tried = 0;
-  Measured last;
+  SetScores last;
   const KnobSearch settings{.rounds = effort.rounds,
                             .score =
                                 [&](const Values& values) {

@@ -29,7 +29,7 @@ def header(names, words):
 
 
 def disparity_of(folder, truth, preset, **options):
-    """A pair's disparities by a preset, as (left, right, rig and options, SceneDisparity)."""
+    """A pair's disparities by a preset, as (left, right, rig and options, StereoResult)."""
     left, right = cairn.load_pair(folder / "left.png", folder / "right.png")
     calibration = cairn.load_calibration(truth / "calib.txt")
     config = cairn.Config(preset, match={"num_disparities": calibration.num_disparities or 64}, **options)

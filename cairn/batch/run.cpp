@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = std::size_t{16} << 20;  // of run.json and config.yaml
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20;  // of run.json and config.yaml
 
 std::string id_of(const Run& run) {
   return io::sha256(std::string("cairn batch ") + CAIRN_VERSION + "\n" + run.manifest_sha256 + "\n" +
@@ -88,8 +88,8 @@ std::string file_sha256(const fs::path& path) {
 
 }  // namespace
 
-Planned plan(const fs::path& folder, const std::vector<PlannedFrame>& frames,
-             const std::vector<std::size_t>& sequences, std::string_view config_yaml) {
+PlanResult plan(const fs::path& folder, const std::vector<PlannedFrame>& frames,
+                const std::vector<std::size_t>& sequences, std::string_view config_yaml) {
   if (frames.empty()) throw Error("the inputs contain no frame");
   check_names(frames);
   Run run{folder, {}, frames.size(), sequences, {}, io::sha256(config_yaml)};
@@ -129,7 +129,7 @@ Run open_run(const fs::path& folder) {
   std::error_code unknown;
   if (!fs::is_regular_file(file, unknown))
     throw Error(folder.string() + ": holds no run.json, expected the folder of cairn batch plan -o");
-  const Json json = Json::parse(io::read_file(file, kMostBytes), nullptr, false);
+  const Json json = Json::parse(io::read_file(file, kMaxBytes), nullptr, false);
   if (!json.is_object())
     throw Error(file.string() + ": is not a JSON object, expected a file written by cairn batch plan");
   const std::string version = text_at(json, "cairn", file);

@@ -38,7 +38,7 @@ struct Run {
   [[nodiscard]] std::filesystem::path work() const { return folder / "work"; }
 };
 
-struct Planned {
+struct PlanResult {
   Run run;
   bool was_there = false;  // the same run was planned before
 };
@@ -46,8 +46,8 @@ struct Planned {
 /// Writes the manifest of a run, one line per frame, and its configuration; run.json last. `sequences`: as in
 /// Run. No effect if the folder already contains the same run. Throws Error if it contains another one or
 /// other files, two frames have one name, or there is no frame.
-Planned plan(const std::filesystem::path& folder, const std::vector<PlannedFrame>& frames,
-             const std::vector<std::size_t>& sequences, std::string_view config_yaml);
+PlanResult plan(const std::filesystem::path& folder, const std::vector<PlannedFrame>& frames,
+                const std::vector<std::size_t>& sequences, std::string_view config_yaml);
 
 /// Reads run.json. Throws Error if the folder contains no run, or one planned by another version.
 Run open_run(const std::filesystem::path& folder);

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostShards = 1'000'000;
+constexpr std::size_t kMaxShards = 1'000'000;
 constexpr std::size_t kRowsBetweenSyncs = 256;
 constexpr double kSecondsBetweenSyncs = 60;
 constexpr double kSecondsBetweenNotes = 2;
@@ -246,7 +246,7 @@ Shard parse_shard(std::string_view text) {
   if (slash != std::string_view::npos) {
     const auto number = count_in(text.substr(0, slash));
     const auto of = count_in(text.substr(slash + 1));
-    if (number && of && *number >= 1 && *number <= *of && *of <= kMostShards) return {*number, *of};
+    if (number && of && *number >= 1 && *number <= *of && *of <= kMaxShards) return {*number, *of};
   }
   throw Error("--shard: found " + std::string(text) + ", expected K/N with K from 1 to N (1/8 … 8/8)");
 }
@@ -257,7 +257,7 @@ std::optional<Shard> shard_of_slurm() {
   const std::size_t count = count_of_variable("SLURM_ARRAY_TASK_COUNT").value_or(0);
   const std::size_t first = count_of_variable("SLURM_ARRAY_TASK_MIN").value_or(0);
   const std::size_t step = std::max<std::size_t>(count_of_variable("SLURM_ARRAY_TASK_STEP").value_or(1), 1);
-  if (count >= 1 && count <= kMostShards && *id >= first && (*id - first) % step == 0 &&
+  if (count >= 1 && count <= kMaxShards && *id >= first && (*id - first) % step == 0 &&
       (*id - first) / step < count) {
     return Shard{(*id - first) / step + 1, count};
   }
@@ -289,7 +289,7 @@ std::optional<Shard> shard_of_file(const fs::path& file) {
   if (!stem.starts_with("part-") || of == std::string::npos) return std::nullopt;
   const auto number = count_in(std::string_view(stem).substr(5, of - 5));
   const auto count = count_in(std::string_view(stem).substr(of + 4));
-  if (!number || !count || *number < 1 || *number > *count || *count > kMostShards) return std::nullopt;
+  if (!number || !count || *number < 1 || *number > *count || *count > kMaxShards) return std::nullopt;
   return Shard{*number, *count};
 }
 
@@ -304,10 +304,10 @@ std::optional<SeenWorker> see_worker(const fs::path& lock_file) {
   return seen;
 }
 
-Worked work_on(const Run& run, Shard shard, const MakeRow& make_row, const OnFrame& on_frame,
-               const std::function<void(const std::string&)>& on_wait) {
+WorkResult work_on(const Run& run, Shard shard, const MakeRow& make_row, const OnFrame& on_frame,
+                   const std::function<void(const std::string&)>& on_wait) {
   const FrameSpan span = span_of(shard, run);
-  Worked worked{false, span.end - span.begin};
+  WorkResult worked{false, span.end - span.begin};
   const fs::path part = part_file(run, shard);
   std::error_code unknown;
   if (fs::exists(part, unknown)) {

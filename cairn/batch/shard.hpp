@@ -46,7 +46,7 @@ struct WorkerNote {
   std::size_t errors = 0;
 };
 
-struct Worked {
+struct WorkResult {
   bool was_done = false;  // the part was already complete
   std::size_t frames = 0;
   std::size_t resumed = 0;  // rows of an interrupted worker
@@ -64,8 +64,8 @@ using OnFrame = std::function<void(std::size_t place, std::size_t frames, const 
 /// that an interrupted worker loses at most one frame; they are synced to disk every 256 frames or 60 s. Of
 /// two workers on one shard the second waits for the first (`on_wait`: for whom) and continues if that one
 /// was interrupted. Throws Error if a file cannot be written.
-Worked work_on(const Run& run, Shard shard, const MakeRow& make_row, const OnFrame& on_frame,
-               const std::function<void(const std::string&)>& on_wait);
+WorkResult work_on(const Run& run, Shard shard, const MakeRow& make_row, const OnFrame& on_frame,
+                   const std::function<void(const std::string&)>& on_wait);
 
 /// The note of a worker; nullopt if the file has none. `is_held`: the worker still runs.
 struct SeenWorker {

@@ -161,9 +161,9 @@ std::vector<MissingFrames> missing_frames(const Run& run) {
   return missing;
 }
 
-Merged merge(const Run& run, const std::function<void(std::string_view)>& take) {
+MergeResult merge(const Run& run, const std::function<void(std::string_view)>& take) {
   const std::vector<Part> stretches = stretches_of(run);
-  Merged merged;
+  MergeResult merged;
   io::Sha256 sum;
   auto stretch = stretches.begin();
   std::optional<PartReader> reader;

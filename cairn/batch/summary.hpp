@@ -38,13 +38,13 @@ struct MissingFrames {
 /// The frames without a complete part. Reads the manifest only if some are missing.
 std::vector<MissingFrames> missing_frames(const Run& run);
 
-struct Merged {
+struct MergeResult {
   std::size_t rows = 0;
   std::size_t errors = 0;
   std::string sha256;  // of the rows, each with its newline
 };
 /// Passes the rows of all frames in the order of the manifest to `take`, from whichever parts; frames without
 /// a row are skipped. Throws Error if a part is not as a worker wrote it.
-Merged merge(const Run& run, const std::function<void(std::string_view row_and_newline)>& take);
+MergeResult merge(const Run& run, const std::function<void(std::string_view row_and_newline)>& take);
 
 }  // namespace cairn::batch

@@ -19,19 +19,19 @@ class PoolMemory final : public std::pmr::memory_resource {
   explicit PoolMemory(Pool pool) : pool_(std::move(pool)) {}
 
  private:
-  static constexpr std::size_t kLeast = std::size_t{1} << 14U;
+  static constexpr std::size_t kMin = std::size_t{1} << 14U;
   static constexpr std::size_t kHeader = 64;  // holds the Buffer; keeps the data aligned
   static_assert(sizeof(Pool::Buffer) <= kHeader);
 
   void* do_allocate(std::size_t bytes, std::size_t alignment) override {
-    if (bytes < kLeast) return std::pmr::new_delete_resource()->allocate(bytes, alignment);
+    if (bytes < kMin) return std::pmr::new_delete_resource()->allocate(bytes, alignment);
     Pool::Buffer buffer = pool_.take(std::bit_ceil(bytes + kHeader));
     std::byte* const data = buffer.data();
     new (data) Pool::Buffer(std::move(buffer));
     return data + kHeader;
   }
   void do_deallocate(void* data, std::size_t bytes, std::size_t alignment) override {
-    if (bytes < kLeast) return std::pmr::new_delete_resource()->deallocate(data, bytes, alignment);
+    if (bytes < kMin) return std::pmr::new_delete_resource()->deallocate(data, bytes, alignment);
     auto* const kept = std::launder(reinterpret_cast<Pool::Buffer*>(static_cast<std::byte*>(data) - kHeader));
     const Pool::Buffer buffer = std::move(*kept);
     kept->~Buffer();

@@ -17,8 +17,8 @@ using sparse::Place;
 constexpr int kCoarseWidth = 400;  // px; greatest width of the images searched …
 constexpr int kFineWidth = 1400;   // px; … and where these have too little texture
 constexpr std::size_t kEnoughPoints = 100;
-constexpr std::size_t kMostPoints = 500;
-constexpr float kLeastAlike = 0.75F;    // least correlation of a match, −1 … 1
+constexpr std::size_t kMaxPoints = 500;
+constexpr float kMinAlike = 0.75F;      // least correlation of a match, −1 … 1
 constexpr float kRivalRatio = 1.2F;     // least ratio of 1 − score, of a rival to the best place
 constexpr float kRivalMargin = 0.005F;  // added to that bound
 constexpr int kNear = 2;                // px; a place this near is no rival, and confirms the search back
@@ -112,7 +112,7 @@ void correlate(const Level& from, Point p, const Level& in, Scores& scores) {
 /// The search area for `p`.
 Rect places_around(Point p, Size size) {
   const int columns = static_cast<int>(kWidestDisparity * static_cast<float>(size.width));
-  const int rows = std::max(4, static_cast<int>(kMostRowsOff * static_cast<float>(size.height)));
+  const int rows = std::max(4, static_cast<int>(kMaxRowsOff * static_cast<float>(size.height)));
   const int x0 = std::max(0, p.x - columns);
   const int y0 = std::max(0, p.y - rows);
   const int x1 = std::min(size.width - kWindow, p.x + columns);
@@ -125,7 +125,7 @@ std::optional<Point> most_alike(const Level& from, Point p, const Level& in, Sco
   scores.places = places_around(p, in.gray.size());
   correlate(from, p, in, scores);
   const auto best = std::max_element(scores.score.begin(), scores.score.end());
-  if (best == scores.score.end() || *best < kLeastAlike) return std::nullopt;
+  if (best == scores.score.end() || *best < kMinAlike) return std::nullopt;
   const auto index = static_cast<int>(best - scores.score.begin());
   const Point at{index % scores.places.width, index / scores.places.width};
   const float rival_from = 1 - kRivalRatio * (1 - *best) - kRivalMargin;
@@ -197,9 +197,9 @@ Correspondences find_correspondences(const StereoPair& pair, const Exec& exec) {
   const Pyramid left(pair.left(), exec);
   const Pyramid right(pair.right(), exec);
   std::size_t start = left.levels() - 1;
-  std::vector<Point> points = sparse::textured_points(left.at(start), kMostPoints, exec);
+  std::vector<Point> points = sparse::textured_points(left.at(start), kMaxPoints, exec);
   if (points.size() < kEnoughPoints && start > 0 && left.at(start - 1).width() <= kFineWidth)
-    points = sparse::textured_points(left.at(--start), kMostPoints, exec);
+    points = sparse::textured_points(left.at(--start), kMaxPoints, exec);
   const Level left_level = make_level(left.at(start), exec);
   const Level right_level = make_level(right.at(start), exec);
   std::vector<std::optional<Correspondence>> found(points.size());

@@ -28,7 +28,7 @@ struct Correspondences {
 /// The search area around a point, as shares: of the width to either side, since the cameras may be swapped,
 /// and of the height up and down, since the pair may not be rectified.
 inline constexpr float kWidestDisparity = 0.4F;
-inline constexpr float kMostRowsOff = 0.125F;
+inline constexpr float kMaxRowsOff = 0.125F;
 
 /// Sparse points of the left image matched anywhere in the right one, without assuming a calibration,
 /// epipolar lines or the sign of the disparity. Windows are correlated (zero mean, normalised) in images of

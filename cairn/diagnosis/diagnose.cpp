@@ -376,9 +376,9 @@ std::vector<float> supported_disparities(const std::vector<Correspondence>& poin
 
 /// A sample of a few thousand disparities, ascending.
 std::vector<float> some_disparities(View<const float> disparity_px) {
-  constexpr std::int64_t kMost = 4096;
+  constexpr std::int64_t kMax = 4096;
   const std::int64_t area = disparity_px.size().area();
-  const std::int64_t step = std::max<std::int64_t>(1, area / kMost) | 1;  // odd, to sample all columns
+  const std::int64_t step = std::max<std::int64_t>(1, area / kMax) | 1;  // odd, to sample all columns
   std::vector<float> some;
   for (std::int64_t i = 0; i < area; i += step) {
     const float d =
@@ -440,9 +440,9 @@ std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<
   return united({c.findings});
 }
 
-std::vector<NotChecked> not_checked(const PairMeasures& measures, const std::optional<StereoRig>& rig,
-                                    const DiagnosisConfig& config) {
-  std::vector<NotChecked> all;
+std::vector<SkippedCheck> not_checked(const PairMeasures& measures, const std::optional<StereoRig>& rig,
+                                      const DiagnosisConfig& config) {
+  std::vector<SkippedCheck> all;
   const RowAlignment& rows = measures.rows;
   if (!rig) all.push_back({"calibration and distances", "no calibration with a baseline was given", false});
   const std::string found = std::to_string(rows.agreeing) + " of " + std::to_string(rows.points) +
@@ -461,17 +461,17 @@ std::vector<NotChecked> not_checked(const PairMeasures& measures, const std::opt
                              text_of(", or %g %% of them", static_cast<double>(config.least_certain_share))});
   }
   too_few("shift of the rows", config.least_points);
-  too_few("rotation of the right image", RowAlignment::kLeastForRoll);
-  too_few("rectification", RowAlignment::kLeastForField);
+  too_few("rotation of the right image", RowAlignment::kMinForRoll);
+  too_few("rectification", RowAlignment::kMinForField);
   if (!measures.brightness.is_measured()) {
     all.push_back({"equal brightness", std::to_string(measures.brightness.points) +
                                            " windows could be compared, expected " +
-                                           std::to_string(BrightnessDifference::kLeastPoints)});
+                                           std::to_string(BrightnessDifference::kMinPoints)});
   }
   const int edges = std::min(measures.left_sharpness.edges, measures.right_sharpness.edges);
-  if (edges < Sharpness::kLeastEdges) {
+  if (edges < Sharpness::kMinEdges) {
     all.push_back({"focus", std::to_string(edges) + " edges in the poorer image, expected " +
-                                std::to_string(Sharpness::kLeastEdges)});
+                                std::to_string(Sharpness::kMinEdges)});
   }
   return all;
 }

@@ -117,13 +117,13 @@ std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<
                               const MatchConfig& range, const DiagnosisConfig& config);
 
 /// A check for which diagnose() had not enough data.
-struct NotChecked {
+struct SkippedCheck {
   std::string_view check;
   std::string why;                // what was found, what was expected
   bool is_for_want_of_it = true;  // too little in the images; false: its input was not given
 };
-std::vector<NotChecked> not_checked(const PairMeasures& measures, const std::optional<StereoRig>& rig,
-                                    const DiagnosisConfig& config);
+std::vector<SkippedCheck> not_checked(const PairMeasures& measures, const std::optional<StereoRig>& rig,
+                                      const DiagnosisConfig& config);
 
 /// diagnose() from the results of segment() for a frame, at almost no cost: rows from the epipolar
 /// correction, the range from the share of disparities at its end, exposure, calibration, and why there is no

@@ -56,8 +56,8 @@ Exposure measure_exposure(View<const Gray> image) {
 
 BrightnessDifference measure_brightness_difference(const StereoPair& pair, const Correspondences& agreeing) {
   constexpr double kMiddle = 128;
-  constexpr double kScale = 4;         // grey levels; typical difference between windows
-  constexpr double kLeastSpread = 20;  // grey levels between the darker and the brighter windows
+  constexpr double kScale = 4;       // grey levels; typical difference between windows
+  constexpr double kMinSpread = 20;  // grey levels between the darker and the brighter windows
   std::vector<Equation<2>> equations;
   std::vector<double> differences;
   std::vector<double> levels;
@@ -73,7 +73,7 @@ BrightnessDifference measure_brightness_difference(const StereoPair& pair, const
   result.points = static_cast<int>(equations.size());
   if (!result.is_measured()) return result;
   result.median = static_cast<float>(quantile(differences, 0.5));
-  if (quantile(levels, 0.9) - quantile(levels, 0.1) < kLeastSpread) {
+  if (quantile(levels, 0.9) - quantile(levels, 0.1) < kMinSpread) {
     std::vector<double> signed_differences;
     signed_differences.reserve(equations.size());
     for (const auto& e : equations) signed_differences.push_back(e.value);

@@ -16,16 +16,16 @@ Exposure measure_exposure(View<const Gray> image);
 
 /// The difference in brightness of the cameras: right ≈ gain · left + offset.
 struct BrightnessDifference {
-  static constexpr int kLeastPoints = 50;
+  static constexpr int kMinPoints = 50;
   int points = 0;  // windows compared, without clipped pixels
   float gain = 1;
   float offset = 0;  // grey levels
   float median = 0;  // of |right − left|, grey levels
   /// If false, gain, offset and median are those of equal cameras.
-  [[nodiscard]] bool is_measured() const { return points >= kLeastPoints; }
+  [[nodiscard]] bool is_measured() const { return points >= kMinPoints; }
 };
 /// Robustly compares the means of windows of 9×9 px around correspondences (those with consistent rows).
-/// Fewer than kLeastPoints windows: not measured. If the brightness of the windows hardly varies, the gain
+/// Fewer than kMinPoints windows: not measured. If the brightness of the windows hardly varies, the gain
 /// stays 1 and the offset absorbs the difference.
 BrightnessDifference measure_brightness_difference(const StereoPair& pair, const Correspondences& agreeing);
 

@@ -97,7 +97,7 @@ bool is_certain(const std::vector<Equation<2>>& equations, const std::array<doub
     squares += e.terms[1] * e.terms[1];
     residuals += residual * residual;
   }
-  if (count < RowAlignment::kLeastForRoll) return false;
+  if (count < RowAlignment::kMinForRoll) return false;
   const double spread = squares - sum * sum / count;
   return std::abs(line[1]) * std::sqrt(spread * count) > kCertain * std::sqrt(residuals);
 }
@@ -113,12 +113,12 @@ Rows rows_of(const Correspondences& found) {
     rows.line = {fit_robustly<1>(shifts, kCloseRows)[0], 0};
   }
   rows.expected = values_of<2>(lines, rows.line);
-  if (found.list.size() < RowAlignment::kLeastForField) return rows;
+  if (found.list.size() < RowAlignment::kMinForField) return rows;
   const auto fields = equations_of<7>(found, [&](const Correspondence& c) { return frame.field(c); });
   std::vector<double> expected = values_of<7>(fields, fit_robustly<7>(fields, kCloseRows));
   const auto by_line = static_cast<double>(within(found, rows.expected, kCloseRows));
   const auto by_field = static_cast<double>(within(found, expected, kCloseRows));
-  if (by_field < std::max(static_cast<double>(RowAlignment::kLeastForField), kGain * by_line)) return rows;
+  if (by_field < std::max(static_cast<double>(RowAlignment::kMinForField), kGain * by_line)) return rows;
   rows.expected = std::move(expected);
   rows.line = line_through(found, lines, rows.expected);
   rows.is_field = true;
@@ -132,9 +132,9 @@ RowAlignment measure_row_alignment(const Correspondences& found) {
   result.points = static_cast<int>(found.list.size());
   if (found.list.empty()) return result;
   for (const Correspondence& c : found.list) {
-    const long bin = std::clamp(std::lround(c.rows()), -static_cast<long>(RowAlignment::kMostBins),
-                                static_cast<long>(RowAlignment::kMostBins));
-    ++result.histogram[static_cast<std::size_t>(bin + RowAlignment::kMostBins)];
+    const long bin = std::clamp(std::lround(c.rows()), -static_cast<long>(RowAlignment::kMaxBins),
+                                static_cast<long>(RowAlignment::kMaxBins));
+    ++result.histogram[static_cast<std::size_t>(bin + RowAlignment::kMaxBins)];
   }
   const Rows rows = rows_of(found);
   const Frame frame = frame_of(found);

@@ -20,11 +20,11 @@ struct RowAlignment {
   [[nodiscard]] double agreeing_share() const {
     return points > 0 ? static_cast<double>(agreeing) / points : 0.0;
   }
-  static constexpr int kLeastForRoll = 24;   // consistent points; with fewer rows_per_px is 0
-  static constexpr int kLeastForField = 40;  // the same for left_over_rows
-  static constexpr int kMostBins = 8;
+  static constexpr int kMinForRoll = 24;   // consistent points; with fewer rows_per_px is 0
+  static constexpr int kMinForField = 40;  // the same for left_over_rows
+  static constexpr int kMaxBins = 8;
   /// Points by y_right − y_left, rounded, from −8 to 8 rows; the outermost bins include all beyond.
-  std::array<int, 2 * kMostBins + 1> histogram{};
+  std::array<int, 2 * kMaxBins + 1> histogram{};
 };
 
 /// The roll is 0 with fewer than 24 consistent points, or below five of its standard errors; left_over_rows

@@ -9,8 +9,8 @@
 namespace cairn {
 namespace {
 
-constexpr int kLeastStep = 12;
-constexpr float kLeastShare = 0.25F;  // of the image's contrast
+constexpr int kMinStep = 12;
+constexpr float kMinShare = 0.25F;  // of the image's contrast
 
 /// Adds the widths of a row's edges.
 void measure_row(const Gray* row, int width, int least, std::vector<double>& widths) {
@@ -32,12 +32,12 @@ void measure_row(const Gray* row, int width, int least, std::vector<double>& wid
 }  // namespace
 
 Sharpness measure_sharpness(View<const Gray> image, float contrast) {
-  const int least = std::max(kLeastStep, static_cast<int>(kLeastShare * contrast));
+  const int least = std::max(kMinStep, static_cast<int>(kMinShare * contrast));
   std::vector<double> widths;
   for (int y = 0; y < image.height(); ++y) measure_row(image.row(y), image.width(), least, widths);
   Sharpness result;
   result.edges = static_cast<int>(widths.size());
-  if (widths.size() >= Sharpness::kLeastEdges) result.edge_px = static_cast<float>(quantile(widths, 0.25));
+  if (widths.size() >= Sharpness::kMinEdges) result.edge_px = static_cast<float>(quantile(widths, 0.25));
   return result;
 }
 

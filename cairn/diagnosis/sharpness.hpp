@@ -8,9 +8,9 @@ namespace cairn {
 
 /// The width of edges from dark to bright, in pixels.
 struct Sharpness {
-  static constexpr int kLeastEdges = 50;  // fewer leave edge_px 0
-  int edges = 0;                          // edges measured
-  float edge_px = 0;                      // lower quartile of their widths
+  static constexpr int kMinEdges = 50;  // fewer leave edge_px 0
+  int edges = 0;                        // edges measured
+  float edge_px = 0;                    // lower quartile of their widths
 };
 
 /// An edge is a monotonic run of pixels along a row that spans a quarter of the image contrast and at least

@@ -13,14 +13,14 @@ namespace cairn {
 namespace {
 
 constexpr int kBands = 16;
-constexpr std::size_t kMostTried = 6;  // frames to match with their neighbours
-constexpr double kLeastCorrelation = 0.6;
+constexpr std::size_t kMaxTried = 6;  // frames to match with their neighbours
+constexpr double kMinCorrelation = 0.6;
 constexpr double kClearCorrelation = 0.2;    // above the correlation of lag 0
 constexpr double kClearAgreement = 1.25;     // times the agreement of lag 0
 constexpr double kTellingCorrelation = 0.1;  // above that of any other lag: the lags are distinguishable
 constexpr double kTellingAgreement = 1.1;    // times that of any other lag
-constexpr double kUnexplained = 0.5;   // 1 − correlation of two lags, as a share of that of one; at most
-constexpr std::size_t kLeastPart = 6;  // changes; shortest part with a lag of its own
+constexpr double kUnexplained = 0.5;  // 1 − correlation of two lags, as a share of that of one; at most
+constexpr std::size_t kMinPart = 6;   // changes; shortest part with a lag of its own
 
 /// Mean change of each band of rows between consecutive images, in grey levels.
 using Change = std::array<double, kBands>;
@@ -75,7 +75,7 @@ struct Sums {
 using SumsByLag = std::array<Sums, Synchrony::kLags>;
 
 std::size_t index(int lag) {
-  return static_cast<std::size_t>(lag + Synchrony::kMostLag);
+  return static_cast<std::size_t>(lag + Synchrony::kMaxLag);
 }
 
 /// Over left[i] and right[i + lag].
@@ -98,7 +98,7 @@ SumsByLag sums_by_lag(std::span<const Change> left, std::span<const Change> righ
   SumsByLag sums;
   const std::vector<Change> of_left = without_means(left);
   const std::vector<Change> of_right = without_means(right);
-  for (int lag = -Synchrony::kMostLag; lag <= Synchrony::kMostLag; ++lag)
+  for (int lag = -Synchrony::kMaxLag; lag <= Synchrony::kMaxLag; ++lag)
     sums[index(lag)] = sums_of(of_left, of_right, lag);
   return sums;
 }
@@ -106,7 +106,7 @@ SumsByLag sums_by_lag(std::span<const Change> left, std::span<const Change> righ
 /// Whether `lag` explains a part much better than `other`.
 bool is_clear(const SumsByLag& part, int lag, int other) {
   const double correlation = part[index(lag)].correlation();
-  return correlation >= kLeastCorrelation &&
+  return correlation >= kMinCorrelation &&
          correlation >= part[index(other)].correlation() + kClearCorrelation;
 }
 
@@ -116,11 +116,11 @@ std::optional<LagChange> find_change(std::span<const Change> left, std::span<con
                                      double by_one) {
   std::optional<LagChange> best;
   // Change i is from frame i to frame i + 1; the change across the boundary belongs to neither part.
-  for (std::size_t from = kLeastPart + 1; from + kLeastPart <= left.size(); ++from) {
+  for (std::size_t from = kMinPart + 1; from + kMinPart <= left.size(); ++from) {
     const SumsByLag first = sums_by_lag(left.first(from - 1), right.first(from - 1));
     const SumsByLag second = sums_by_lag(left.subspan(from), right.subspan(from));
-    for (int before = -Synchrony::kMostLag; before <= Synchrony::kMostLag; ++before) {
-      for (int after = -Synchrony::kMostLag; after <= Synchrony::kMostLag; ++after) {
+    for (int before = -Synchrony::kMaxLag; before <= Synchrony::kMaxLag; ++before) {
+      for (int after = -Synchrony::kMaxLag; after <= Synchrony::kMaxLag; ++after) {
         if (!is_clear(first, before, after) || !is_clear(second, after, before)) continue;
         const double both = (first[index(before)] + second[index(after)]).correlation();
         if (both < (best ? best->motion : 1 - kUnexplained * (1 - by_one))) continue;
@@ -139,7 +139,7 @@ double agreement(const StereoPair& pair, const Exec& exec) {
 /// The lag with the greatest value.
 int best_of(const std::array<double, Synchrony::kLags>& values) {
   return static_cast<int>(std::max_element(values.begin(), values.end()) - values.begin()) -
-         Synchrony::kMostLag;
+         Synchrony::kMaxLag;
 }
 
 /// The greatest value of another lag.
@@ -163,16 +163,16 @@ Synchrony measure_synchrony(std::span<const StereoPair> sequence, const Exec& ex
     result.left_repeats += left_still && !right_still ? 1 : 0;
     result.right_repeats += right_still && !left_still ? 1 : 0;
   }
-  if (result.frames < Synchrony::kLeastFrames) return result;
+  if (result.frames < Synchrony::kMinFrames) return result;
   const SumsByLag sums = sums_by_lag(left, right);
   for (std::size_t lag = 0; lag < sums.size(); ++lag) result.motion[lag] = sums[lag].correlation();
   result.change = find_change(left, right, result.motion[index(best_of(result.motion))]);
 
-  const std::size_t inner = sequence.size() - 2 * Synchrony::kMostLag;
-  const std::size_t tried = std::min(kMostTried, inner);
+  const std::size_t inner = sequence.size() - 2 * Synchrony::kMaxLag;
+  const std::size_t tried = std::min(kMaxTried, inner);
   for (std::size_t k = 0; k < tried; ++k) {
-    const std::size_t i = Synchrony::kMostLag + k * inner / tried;
-    for (int lag = -Synchrony::kMostLag; lag <= Synchrony::kMostLag; ++lag) {
+    const std::size_t i = Synchrony::kMaxLag + k * inner / tried;
+    for (int lag = -Synchrony::kMaxLag; lag <= Synchrony::kMaxLag; ++lag) {
       const auto other = static_cast<std::size_t>(static_cast<int>(i) + lag);
       const auto pair = StereoPair::from(sequence[i].left(), sequence[other].right());
       result.agreement[index(lag)] += agreement(pair, exec) / static_cast<double>(tried);
@@ -183,7 +183,7 @@ Synchrony measure_synchrony(std::span<const StereoPair> sequence, const Exec& ex
 
 int Synchrony::lag() const {
   const int by_motion = best_of(motion);
-  if (motion[index(by_motion)] >= kLeastCorrelation &&
+  if (motion[index(by_motion)] >= kMinCorrelation &&
       motion[index(by_motion)] >= motion[index(0)] + kClearCorrelation) {
     return by_motion;
   }
@@ -194,7 +194,7 @@ int Synchrony::lag() const {
 
 bool Synchrony::tells() const {
   const double correlation = motion[index(best_of(motion))];
-  if (change || (correlation >= kLeastCorrelation && correlation >= second_of(motion) + kTellingCorrelation))
+  if (change || (correlation >= kMinCorrelation && correlation >= second_of(motion) + kTellingCorrelation))
     return true;
   return agreement[index(best_of(agreement))] > kTellingAgreement * second_of(agreement);
 }
@@ -253,7 +253,7 @@ std::optional<Finding> diagnose(const Synchrony& synchrony, std::span<const std:
                    {},
                    is_right ? Camera::right : Camera::left};
   }
-  if (synchrony.frames < Synchrony::kLeastFrames || synchrony.tells()) return std::nullopt;
+  if (synchrony.frames < Synchrony::kMinFrames || synchrony.tells()) return std::nullopt;
   return Finding{FindingKind::unknown_synchrony, Severity::note, 100 * as_they_are,
                  "too little motion, or too even, to determine whether a camera is late: the changes in "
                  "both images correlate to " +

@@ -22,9 +22,9 @@ struct LagChange {
 
 /// Whether the two cameras of a sequence took their images at the same time.
 struct Synchrony {
-  static constexpr int kLeastFrames = 8;  // fewer are inconclusive
-  static constexpr int kMostLag = 2;
-  static constexpr int kLags = 2 * kMostLag + 1;
+  static constexpr int kMinFrames = 8;  // fewer are inconclusive
+  static constexpr int kMaxLag = 2;
+  static constexpr int kLags = 2 * kMaxLag + 1;
   int frames = 0;
   /// If the left images change from frame to frame, the right ones should too. For a right camera −2 … 2
   /// frames late: the correlation of the changes, in 16 bands of rows, over all frames; 0 if nothing changes.

@@ -121,7 +121,7 @@ Consistency consistency(View<const Gray> left, View<const Gray> right, View<cons
       ++all.confirmed;
       const double seen =
           scale.gain * grey_at(right.row(y), left.width(), static_cast<float>(x) - d) + scale.offset;
-      all.photometric_sum += std::min(1.0, std::abs(left(x, y) - seen) / kFarthestGrey);
+      all.photometric_sum += std::min(1.0, std::abs(left(x, y) - seen) / kMaxGreyDifference);
     }
   }
   return all;

@@ -15,7 +15,7 @@ struct Consistency {
   std::int64_t pixels = 0;
   std::int64_t matched = 0;    // with a disparity
   std::int64_t confirmed = 0;  // of these, agreeing with the winner of the right image within kConfirmedPx
-  double photometric_sum = 0;  // over the confirmed: |left − warped right| / kFarthestGrey, at most 1
+  double photometric_sum = 0;  // over the confirmed: |left − warped right| / kMaxGreyDifference, at most 1
 
   Consistency& operator+=(const Consistency& other);
   [[nodiscard]] double density() const;      // matched / pixels
@@ -31,7 +31,7 @@ inline constexpr float kConfirmedPx = 1.0F;
 /// Lower than one half, the value if all confirmed disparities were right; see docs/tune.md.
 inline constexpr double kUnmatchedCost = 0.25;
 /// The grey level difference from which on a pixel counts as not explained.
-inline constexpr double kFarthestGrey = 16;
+inline constexpr double kMaxGreyDifference = 16;
 
 /// `right` is the matched image (after correct_epipolar(), if it shifted the image), `best_right`
 /// Matches::best_right: the winning disparity of each right pixel over all candidates, kNoMatch = none. All

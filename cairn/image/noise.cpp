@@ -11,10 +11,10 @@
 namespace cairn {
 namespace {
 
-constexpr std::size_t kGreatestResponse = 8 * 255;  // of the noise kernel
+constexpr std::size_t kMaxResponse = 8 * 255;  // of the noise kernel
 
 /// Histogram of the noise kernel's responses.
-using Responses = std::array<std::int64_t, kGreatestResponse + 1>;
+using Responses = std::array<std::int64_t, kMaxResponse + 1>;
 
 Responses responses(View<const Gray> image, int first_row, int last_row, const Exec& exec) {
   const kernels::NoiseKernels& run = kernels::noise_kernels(exec);

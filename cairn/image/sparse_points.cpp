@@ -21,8 +21,8 @@ std::array<float, 4> cubic(float t) {
 namespace {
 
 constexpr int kPatch = 3;  // blocks; the best point of each kPatch × kPatch blocks is kept
-constexpr float kLeastTexture = 24.0F * kWindowArea;  // squared differences over 2 px, least direction
-constexpr float kMostResidual = 0.5F;                 // squared residual of a match, relative to the texture
+constexpr float kMinTexture = 24.0F * kWindowArea;  // squared differences over 2 px, least direction
+constexpr float kMaxResidual = 0.5F;                // squared residual of a match, relative to the texture
 constexpr int kRefinements = 2;
 constexpr float kFurthest = 1.5F;  // px; total move of a refinement in each direction
 
@@ -122,7 +122,7 @@ std::vector<Point> textured_points(View<const Gray> image, std::size_t most, con
   std::vector<Point> points;
   const auto best_of_patch = [&](int i0, int j0) {
     std::optional<Point> best;
-    float best_texture = kLeastTexture;
+    float best_texture = kMinTexture;
     for (int j = j0; j < std::min(j0 + kPatch, tensors.height() - 1); ++j) {
       for (int i = i0; i < std::min(i0 + kPatch, tensors.width() - 1); ++i) {
         Tensor window = tensors(i, j);
@@ -251,7 +251,7 @@ std::optional<Place> refine(View<const Gray> left, Point p, View<const Gray> rig
     const bool near = std::abs(place.x - start.x) <= kFurthest && std::abs(place.y - start.y) <= kFurthest;
     if (!near) return std::nullopt;
   }
-  if (residual > kMostResidual * t.energy) return std::nullopt;
+  if (residual > kMaxResidual * t.energy) return std::nullopt;
   return place;
 }
 

@@ -79,13 +79,13 @@ std::uint32_t least_sum(float threshold, int count) {
   return static_cast<std::uint32_t>(std::ceil(double{threshold} * count));
 }
 
-constexpr std::uint16_t kGreatestSquare = 255 * 255;
+constexpr std::uint16_t kMaxSquare = 255 * 255;
 
 /// Squares are clipped to the limit of a whole window: a single one of that size is enough texture for any
 /// window.
 std::uint16_t most_that_counts(const TextureLimit& limit) {
   const std::uint32_t least = least_sum(limit.threshold, limit.window_size * limit.window_size);
-  return static_cast<std::uint16_t>(std::min(least, std::uint32_t{kGreatestSquare}));
+  return static_cast<std::uint16_t>(std::min(least, std::uint32_t{kMaxSquare}));
 }
 
 /// Whether sums of up to 31² clipped squares fit 16 bits; 26 bits always suffice.

@@ -64,11 +64,11 @@ std::vector<std::string> stems_of(const std::vector<fs::path>& files) {
 
 /// EuRoC's image names are their stamps.
 std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kFewestDigits = 16;
+  constexpr std::size_t kMinDigits = 16;
   std::vector<Stamp> stamps;
   for (const std::string& name : names) {
     // A number with leading zeros is a frame number.
-    const bool may_be = name.size() >= kFewestDigits && name.front() != '0';
+    const bool may_be = name.size() >= kMinDigits && name.front() != '0';
     const std::optional<Stamp> stamp = may_be ? parse_stamp(name) : std::nullopt;
     if (!stamp || !std::all_of(name.begin(), name.end(), is_digit)) return std::nullopt;
     stamps.push_back(*stamp);
@@ -217,16 +217,16 @@ std::optional<Pattern> pattern_of(const std::string& text) {
                  name.substr(at + 1), is_padded && digits > 0 ? digits : 1};
 }
 
-struct Numbered {
+struct NumberedFiles {
   Side side;
   std::vector<std::size_t> numbers;
 };
 
-Numbered files_of(const std::string& text) {
+NumberedFiles files_of(const std::string& text) {
   const std::optional<Pattern> pattern = pattern_of(text);
   if (!pattern) throw Error(text + ": expected one %d, %04d or the like in the file name");
   if (!is_folder(pattern->folder)) throw Error(pattern->folder.string() + ": no such folder");
-  Numbered found;
+  NumberedFiles found;
   for (const fs::path& file : images_in(pattern->folder)) {
     const std::string name = file.filename().string();
     const std::size_t around = pattern->before.size() + pattern->after.size();
@@ -246,8 +246,8 @@ Numbered files_of(const std::string& text) {
 
 FrameList list_patterns(const std::string& left_text, const std::string& right_text,
                         const SourceOptions& options) {
-  Numbered left = files_of(left_text);
-  const Numbered right = files_of(right_text);
+  NumberedFiles left = files_of(left_text);
+  const NumberedFiles right = files_of(right_text);
   if (const auto path = first_file({left.side.files.front().parent_path() / "stamps.txt"})) {
     left.side.stamps = stamps_by_line(*path, stems_of(left.side.files));
     left.side.stamps_from = path->string();

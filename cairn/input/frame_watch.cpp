@@ -27,7 +27,7 @@ std::uint64_t hash_of(View<const Gray> image) {
 
 }  // namespace
 
-PicturePair SourceCalibration::rectified(PicturePair pair, const Pool& pool) const {
+LoadedPair SourceCalibration::rectified(LoadedPair pair, const Pool& pool) const {
   if (!rectifier) return pair;
   try {
     return (*rectifier)(pair, pool);
@@ -75,7 +75,7 @@ SourceCalibration open_calibration(const SourceOptions& options, const std::opti
 
 void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks) {
   const Size size = frame.left.gray.size();
-  Seen now{frame.stamp, frame.name, hash_of(frame.left.gray.view()), hash_of(frame.right.view())};
+  PreviousFrame now{frame.stamp, frame.name, hash_of(frame.left.gray.view()), hash_of(frame.right.view())};
   if (!before_) {
     size_ = size;
   } else {

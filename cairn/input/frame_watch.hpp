@@ -26,7 +26,7 @@ struct SourceCalibration {
 
   /// The rectified pair for raw images, else the pair itself. Throws Error if the calibration was made for
   /// another size.
-  [[nodiscard]] PicturePair rectified(PicturePair pair, const Pool& pool) const;
+  [[nodiscard]] LoadedPair rectified(LoadedPair pair, const Pool& pool) const;
 
   /// Checks the calibration once the image size is known: sets the search range for raw images; else throws
   /// Error if the file was made for another size, or its range exceeds the image width.
@@ -53,7 +53,7 @@ class FrameWatch {
   [[nodiscard]] Size image_size() const { return size_; }
 
  private:
-  struct Seen {
+  struct PreviousFrame {
     Stamp stamp;
     std::string name;
     std::uint64_t left = 0;  // hashes of the images
@@ -61,7 +61,7 @@ class FrameWatch {
   };
   double max_gap_s_;
   Size size_;
-  std::optional<Seen> before_;
+  std::optional<PreviousFrame> before_;
 };
 
 /// Base of frame sources: a calibration, the checks of frames, and remarks.

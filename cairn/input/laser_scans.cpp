@@ -39,7 +39,7 @@ Point3 mounting_in(const fs::path& path, std::string_view text) {
 
 std::vector<LaserScan> load_scans(const fs::path& path) {
   constexpr std::size_t kBeforeRanges = 3;
-  const std::string text = read_file(path, kMostLogBytes);
+  const std::string text = read_file(path, kMaxLogBytes);
   const std::vector<TextLine> lines = lines_of(text);
   const std::vector<std::string_view> header =
       lines.empty() ? std::vector<std::string_view>{} : fields_of(lines.front().text);
@@ -67,8 +67,8 @@ std::vector<LaserScan> load_scans(const fs::path& path) {
                    mounting};
     const double last =
         scan.first_rad + scan.step_rad * static_cast<double>(fields.size() - kBeforeRanges - 1);
-    constexpr double kMost = 2 * std::numbers::pi + 0.01;
-    if (!(std::abs(scan.first_rad) <= kMost && std::abs(last - scan.first_rad) <= kMost))
+    constexpr double kMax = 2 * std::numbers::pi + 0.01;
+    if (!(std::abs(scan.first_rad) <= kMax && std::abs(last - scan.first_rad) <= kMax))
       throw Error(where + ": found angles beyond a full turn, expected rad: are they degrees?");
     for (std::size_t k = kBeforeRanges; k < fields.size(); ++k) {
       const bool is_nothing = fields[k] == "inf" || fields[k] == "Inf" || fields[k] == "INF";
@@ -85,7 +85,7 @@ std::vector<LaserScan> load_scans(const fs::path& path) {
 }
 
 const LaserScan* scan_at(const std::vector<LaserScan>& scans, Stamp moment) {
-  constexpr std::int64_t kFarthestNs = 50'000'000;
+  constexpr std::int64_t kMaxNs = 50'000'000;
   const LaserScan* best = nullptr;
   auto at = std::ranges::lower_bound(scans, moment, {}, &LaserScan::stamp);
   if (at != scans.end()) best = &*at;
@@ -93,7 +93,7 @@ const LaserScan* scan_at(const std::vector<LaserScan>& scans, Stamp moment) {
     --at;
     if (best == nullptr || moment.ns - at->stamp.ns < best->stamp.ns - moment.ns) best = &*at;
   }
-  return best != nullptr && std::abs(best->stamp.ns - moment.ns) <= kFarthestNs ? best : nullptr;
+  return best != nullptr && std::abs(best->stamp.ns - moment.ns) <= kMaxNs ? best : nullptr;
 }
 
 }  // namespace cairn::io

@@ -24,9 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // The most images of one camera that wait for the other …
-constexpr std::size_t kMostWaiting = 64;
+constexpr std::size_t kMaxWaiting = 64;
 // … and the most bytes of all of them, beyond one each.
-constexpr std::size_t kMostWaitingBytes = std::size_t{512} << 20;
+constexpr std::size_t kMaxWaitingBytes = std::size_t{512} << 20;
 
 /// One camera's images.
 struct Side {
@@ -49,7 +49,7 @@ class McapSequence : public SourceSequence {
         options_(options),
         pool_(std::move(pool)),
         reader_(file),
-        pairing_(options.max_skew_ms, [this](std::size_t side, Pairing::Waiting&& alone) {
+        pairing_(options.max_skew_ms, [this](std::size_t side, Pairing::WaitingItem&& alone) {
           remark(remarks_, {side == 0 ? "left image without a right one" : "right image without a left one",
                             1, number_text(alone.value.index), true, false});
         }) {
@@ -179,8 +179,8 @@ class McapSequence : public SourceSequence {
         take_grey(*message);
       }
       for (const std::size_t full : {std::size_t{0}, std::size_t{1}}) {
-        while (pairing_.waiting(full).size() > kMostWaiting ||
-               (pairing_.waiting(full).size() > 1 && bytes_of(full) > kMostWaitingBytes))
+        while (pairing_.waiting(full).size() > kMaxWaiting ||
+               (pairing_.waiting(full).size() > 1 && bytes_of(full) > kMaxWaitingBytes))
           pairing_.leave(full);
       }
     }
@@ -221,7 +221,7 @@ class McapSequence : public SourceSequence {
       greys_.emplace_back(stamp_of(image.header, message), raster_of(image));
       std::size_t bytes = 0;
       for (const auto& [stamp, grey] : greys_) bytes += grey.bytes.size();
-      while (greys_.size() > kMostWaiting || (greys_.size() > 1 && bytes > kMostWaitingBytes)) {
+      while (greys_.size() > kMaxWaiting || (greys_.size() > 1 && bytes > kMaxWaitingBytes)) {
         bytes -= greys_.front().second.bytes.size();
         greys_.pop_front();
       }
@@ -267,7 +267,7 @@ class McapSequence : public SourceSequence {
       SequenceFrame frame{name, index, stamp, {}, {}, false};
       frame.frame_id = left.frame_id;
       try {
-        PicturePair pair = pair_of(*left.image, *right.image, pool_, bits_);
+        LoadedPair pair = pair_of(*left.image, *right.image, pool_, bits_);
         bits_ = pair.bits;
         if (std::optional<Raster> grey = grey_at(both.left.stamp, pair.left.gray.size()))
           pair.left.gray = std::move(pair_of(*grey, *grey, pool_).left.gray);

@@ -390,14 +390,14 @@ class Gyroscope : public MotionPriors {
 /// Finds the bias: the mean rate of the first half second, if rates and accelerations are steady then.
 void find_bias(Gyroscope::Rows& rows, const std::vector<Vector3>& accelerations) {
   constexpr double kRestS = 0.5;
-  constexpr std::size_t kFewest = 20;
+  constexpr std::size_t kMin = 20;
   constexpr double kSteadyRate = 0.05;         // rad/s, standard deviation
   constexpr double kLargestBias = 0.15;        // rad/s
   constexpr double kSteadyAcceleration = 0.7;  // m/s^2, standard deviation
   std::size_t count = 0;
   while (count < rows.stamps.size() && seconds_between(rows.stamps.front(), rows.stamps[count]) < kRestS)
     ++count;
-  if (count < kFewest) return;
+  if (count < kMin) return;
   const auto is_steady = [&](const std::vector<Vector3>& values, double most, Vector3& mean) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double sum = 0;
@@ -420,7 +420,7 @@ void find_bias(Gyroscope::Rows& rows, const std::vector<Vector3>& accelerations)
 
 /// The rotation in T_BS of an EuRoC sensor.yaml: from the sensor to the body.
 Pose body_from_sensor(const fs::path& path) {
-  const std::string text = read_file(path, kMostTextBytes);
+  const std::string text = read_file(path, kMaxTextBytes);
   const std::size_t pose = text.find("T_BS");
   const std::size_t open = pose == std::string::npos ? pose : text.find('[', pose);
   const std::size_t close = open == std::string::npos ? open : text.find(']', open);
@@ -451,7 +451,7 @@ Pose camera_from_level(double pitch_deg, double roll_deg) {
 }
 
 std::unique_ptr<MotionPriors> load_odometry(const fs::path& path, const fs::path& source_folder) {
-  const std::string text = read_file(path, kMostLogBytes);
+  const std::string text = read_file(path, kMaxLogBytes);
   const std::vector<TextLine> lines = lines_of(text);
   if (lines.empty()) throw Error(path.string() + ": contains no lines of numbers, expected odometry");
   const std::vector<std::string_view> fields = fields_of(lines.front().text);
@@ -469,7 +469,7 @@ std::unique_ptr<MotionPriors> load_odometry(const fs::path& path, const fs::path
 }
 
 std::unique_ptr<MotionPriors> load_imu(const fs::path& path, const Pose& camera_from_imu) {
-  const std::string text = read_file(path, kMostLogBytes);
+  const std::string text = read_file(path, kMaxLogBytes);
   Gyroscope::Rows rows;
   std::vector<Vector3> accelerations;
   std::vector<std::string> names;

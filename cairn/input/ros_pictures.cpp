@@ -77,11 +77,11 @@ Raster raster_of(const ros::Image& image) {
   return raster;
 }
 
-PicturePair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
-                        const std::string& right_topic, int least_bits, const Pool& pool) {
+LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
+                       const std::string& right_topic, int least_bits, const Pool& pool) {
   const Raster first = on_topic(left_topic, [&] { return raster_of(left); });
   const Raster second = on_topic(right_topic, [&] { return raster_of(right); });
-  PicturePair pair = on_topic(right_topic, [&] { return pair_of(first, second, pool, least_bits); });
+  LoadedPair pair = on_topic(right_topic, [&] { return pair_of(first, second, pool, least_bits); });
   pair.right.rgb = {};
   return pair;
 }

@@ -16,7 +16,7 @@ Raster raster_of(const ros::Image& image);
 
 /// Both images, as load_pair() reads them from files; the colours of the right image are dropped. Throws
 /// Error, prefixed with the topic.
-PicturePair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
-                        const std::string& right_topic, int least_bits, const Pool& pool);
+LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
+                       const std::string& right_topic, int least_bits, const Pool& pool);
 
 }  // namespace cairn::io

@@ -52,7 +52,7 @@ class FileSequence : public SourceSequence {
     const std::optional<fs::path> found = first.calib ? first.calib : list_.calib;
     each_has_own_ = options.calib.empty() && first.calib && !list_.is_raw && !options.rectify;
     calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw);
-    if (each_has_own_) calib_bytes_ = read_file(calibration_.path, kMostTextBytes);
+    if (each_has_own_) calib_bytes_ = read_file(calibration_.path, kMaxTextBytes);
     first_ = load(first);
     calibration_.suit(first_->left.gray.size());
     if (auto raw = calibration_.remark_on_raw(first.name)) remarks_.push_back(std::move(*raw));
@@ -80,7 +80,7 @@ class FileSequence : public SourceSequence {
 
   SequenceFrame load(const ListedFrame& files) {
     if (each_has_own_) check_calibration(files);
-    PicturePair pair = load_pair(files.left, files.right, pool_, bits_);
+    LoadedPair pair = load_pair(files.left, files.right, pool_, bits_);
     // Raw images are compared by their own size.
     if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
       throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +
@@ -97,7 +97,7 @@ class FileSequence : public SourceSequence {
 
   void check_calibration(const ListedFrame& files) {
     if (!files.calib || *files.calib == calibration_.path ||
-        read_file(*files.calib, kMostTextBytes) == calib_bytes_)
+        read_file(*files.calib, kMaxTextBytes) == calib_bytes_)
       return;
     if (!is_same(load_calibration(*files.calib, list_.grey_cameras).rig, calibration_.says.rig)) {
       throw Error(files.calib->string() + ": differs from the calibration " + calibration_.path.string() +

@@ -26,7 +26,7 @@ struct SequenceFrame {
   std::string name;       // of the folder, of the left file without extension, or the number in a video
   std::size_t index = 0;  // in the source, from 0; --frames counts these
   Stamp stamp;            // later than the one before
-  Picture left;
+  LoadedImage left;
   Image<Gray> right;
   bool after_gap = false;  // more than SourceOptions::max_gap_s after the frame before
   // For cameras: the arrival time by the steady clock of this computer; nullopt for files.

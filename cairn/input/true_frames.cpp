@@ -18,14 +18,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::int64_t kMostId = 65'535;
-constexpr std::int64_t kMostFrames = 10'000'000;
+constexpr std::int64_t kMaxId = 65'535;
+constexpr std::int64_t kMaxFrames = 10'000'000;
 
 Json load_json(const fs::path& path) {
-  constexpr std::size_t kMost = std::size_t{64} << 20;
+  constexpr std::size_t kMax = std::size_t{64} << 20;
   std::optional<Json> json;
   try {
-    json = parsed_json(read_file(path, kMost));
+    json = parsed_json(read_file(path, kMax));
   } catch (const Error& error) {
     const std::string message = error.what();
     throw Error(message.starts_with(path.string()) ? message : path.string() + ": " + message);
@@ -51,8 +51,8 @@ void each_in(const fs::path& path, const Json& json, const char* key, const Take
 std::map<std::int64_t, TruePlace> load_places(const fs::path& path) {
   std::map<std::int64_t, TruePlace> places;
   each_in(path, load_json(path), "objects", [&](const JsonLine& object) {
-    places[object.integer("id", 1, kMostId)] = {object.maybe_point("centroid_visible_cam"),
-                                                object.maybe_point("centroid_world")};
+    places[object.integer("id", 1, kMaxId)] = {object.maybe_point("centroid_visible_cam"),
+                                               object.maybe_point("centroid_world")};
   });
   return places;
 }
@@ -61,10 +61,10 @@ std::vector<TrueEvent> load_events(const fs::path& path) {
   std::vector<TrueEvent> events;
   each_in(path, load_json(path), "events", [&](const JsonLine& line) {
     TrueEvent event;
-    event.id = line.integer("id", 1, kMostId);
+    event.id = line.integer("id", 1, kMaxId);
     event.is_in_view = line.text("what").find("in view") != std::string::npos;
-    event.first_frame = line.integer("first_frame", 0, kMostFrames);
-    event.last_frame = line.integer("last_frame", event.first_frame, kMostFrames);
+    event.first_frame = line.integer("first_frame", 0, kMaxFrames);
+    event.last_frame = line.integer("last_frame", event.first_frame, kMaxFrames);
     event.from_m = line.maybe_numbers<2>("from_xy");
     event.to_m = line.maybe_numbers<2>("to_xy");
     events.push_back(event);

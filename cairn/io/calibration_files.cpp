@@ -188,10 +188,10 @@ Calibration judged(const Statement& says) {
                   static_cast<float>(*says.baseline_m), static_cast<float>(says.doffs.value_or(0.0))};
   }
   if (says.width && says.height) {
-    calibration.image_size = Size{counted(*says.width, "width", kMostPixelsPerSide),
-                                  counted(*says.height, "height", kMostPixelsPerSide)};
+    calibration.image_size = Size{counted(*says.width, "width", kMaxPixelsPerSide),
+                                  counted(*says.height, "height", kMaxPixelsPerSide)};
   }
-  if (says.ndisp) calibration.num_disparities = counted(*says.ndisp, "ndisp", kMostPixelsPerSide);
+  if (says.ndisp) calibration.num_disparities = counted(*says.ndisp, "ndisp", kMaxPixelsPerSide);
   calibration.of_raw_cameras = says.has_distortion;
   calibration.ground = mounting(says);
   return calibration;
@@ -380,7 +380,7 @@ Statement read_kitti(std::string_view text, bool grey_cameras) {
 Calibration load_calibration(const fs::path& path, bool grey_cameras) {
   std::error_code unknown;
   const fs::path file = fs::is_directory(path, unknown) ? file_in(path) : path;
-  return parse_calibration(read_file(file, kMostTextBytes), file, grey_cameras);
+  return parse_calibration(read_file(file, kMaxTextBytes), file, grey_cameras);
 }
 
 Calibration parse_calibration(std::string_view text, const fs::path& file, bool grey_cameras) {
@@ -439,26 +439,25 @@ void check_ground(const KnownGround& known) {
     throw Error(std::string(key) + " is " + written(value) + ", expected " + written(lowest) + " ... " +
                 written(highest));
   };
-  constexpr double kLeastHeight = 0.01;
-  constexpr double kMostHeight = 100;
-  constexpr double kMostTilt = 89;
-  if (known.camera_height_m)
-    check(double{*known.camera_height_m}, "camera_height", kLeastHeight, kMostHeight);
-  check(double{known.camera_pitch_deg}, "camera_pitch", -kMostTilt, kMostTilt);
-  check(double{known.camera_roll_deg}, "camera_roll", -kMostTilt, kMostTilt);
+  constexpr double kMinHeight = 0.01;
+  constexpr double kMaxHeight = 100;
+  constexpr double kMaxTilt = 89;
+  if (known.camera_height_m) check(double{*known.camera_height_m}, "camera_height", kMinHeight, kMaxHeight);
+  check(double{known.camera_pitch_deg}, "camera_pitch", -kMaxTilt, kMaxTilt);
+  check(double{known.camera_roll_deg}, "camera_roll", -kMaxTilt, kMaxTilt);
   if (!known.points.empty()) (void)ground_from_points(known.points);
 }
 
 int disparities_down_to(double nearest_m, const StereoRig& rig, int width) {
   constexpr int kStep = 16;
-  constexpr int kMost = 1024;
+  constexpr int kMax = 1024;
   constexpr double kNearestBaselines = 5;
   const auto baseline = static_cast<double>(rig.baseline_m);
   if (nearest_m == 0) nearest_m = kNearestBaselines * baseline;
   const double last =
       static_cast<double>(rig.focal_px) * baseline / nearest_m - static_cast<double>(rig.doffs_px);
   const double steps = std::floor(std::max(last, 0.0) / kStep) + 1;
-  return std::min(static_cast<int>(std::min(steps * kStep, double{kMost})), width);
+  return std::min(static_cast<int>(std::min(steps * kStep, double{kMax})), width);
 }
 
 void check_size(const Calibration& calibration, Size image, const fs::path& path) {

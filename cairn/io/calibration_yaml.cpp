@@ -136,8 +136,8 @@ std::optional<std::vector<double>> points_at(const YAML::Node& map) {
   const YAML::Node node = map[kGroundPointsKey];
   if (!node) return std::nullopt;
   if (node.IsScalar()) return finite_numbers(node.Scalar(), kGroundPointsKey);
-  constexpr std::size_t kMostPoints = 4096;
-  if (!node.IsSequence() || node.size() > kMostPoints)
+  constexpr std::size_t kMaxPoints = 4096;
+  if (!node.IsSequence() || node.size() > kMaxPoints)
     throw Error(std::string(kGroundPointsKey) + " is not a list of at most 4096 points");
   std::vector<double> all;
   for (const YAML::Node& item : node) {
@@ -285,7 +285,7 @@ YAML::Node ros_partner(const fs::path& path) {
                 (partner ? ": " + partner->filename().string()
                          : std::string(", named alike with left and right (left.yaml, right.yaml)")));
   }
-  const std::vector<YAML::Node> documents = documents_of(read_file(*partner, kMostTextBytes));
+  const std::vector<YAML::Node> documents = documents_of(read_file(*partner, kMaxTextBytes));
   if (documents.empty())
     throw Error("the file of the other camera " + partner->filename().string() + " is empty");
   return documents.front();
@@ -339,9 +339,9 @@ std::array<double, N> needed(const Document& document, Names names) {
 }
 
 Size raw_size(const Statement& says) {
-  constexpr double kMost = 32768;
+  constexpr double kMax = 32768;
   const auto counted = [](const std::optional<double>& side, const char* name) {
-    if (side && *side >= 1 && *side <= kMost && *side == static_cast<int>(*side))
+    if (side && *side >= 1 && *side <= kMax && *side == static_cast<int>(*side))
       return static_cast<int>(*side);
     throw Error(std::string("has no ") + name + " of the images, expected a whole number");
   };
@@ -428,7 +428,7 @@ RawCalibration raw_from_euroc(const YAML::Node& left, const fs::path& path) {
   std::error_code unknown;
   if (folder.filename() != "cam0" || !fs::is_regular_file(partner, unknown))
     throw Error("is of one of EuRoC's cameras, expected cam0/sensor.yaml with cam1/sensor.yaml next to it");
-  const std::vector<YAML::Node> documents = documents_of(read_file(partner, kMostTextBytes));
+  const std::vector<YAML::Node> documents = documents_of(read_file(partner, kMaxTextBytes));
   if (documents.empty() || !documents.front().IsMap()) throw Error(partner.string() + " is not a YAML map");
   const YAML::Node& right = documents.front();
   RawCalibration raw;

@@ -125,7 +125,7 @@ void require_effects(const std::vector<SetAt>& options, const Config& of_file, c
 
 void load_config(const fs::path& path, Config& config, const FromPreset& from_preset,
                  const std::function<void(Config&)>& on_top, const Elsewhere& elsewhere) {
-  const std::string text = read_file(path, kMostTextBytes);
+  const std::string text = read_file(path, kMaxTextBytes);
   Config read = config;
   std::vector<SetAt> options;
   try {

@@ -254,8 +254,8 @@ Image<float> decode_npy(std::string_view file, const Pool& pool) {
 template <class Decode>
 Image<float> load_floats(const fs::path& path, const Pool& pool, std::size_t pixel_bytes,
                          const Decode& decode) {
-  constexpr std::size_t kMostHeader = std::size_t{1} << 16;
-  const std::string file = read_file(path, static_cast<std::size_t>(kMostPixels) * pixel_bytes + kMostHeader);
+  constexpr std::size_t kMaxHeader = std::size_t{1} << 16;
+  const std::string file = read_file(path, static_cast<std::size_t>(kMaxPixels) * pixel_bytes + kMaxHeader);
   try {
     return decode(file, pool);
   } catch (const Error& error) {

@@ -47,9 +47,9 @@ Gray grey_of(Rgb c) {
 }
 
 template <class Sample>
-Picture to_picture(const Raster& raster, int depth, const Pool& pool) {
+LoadedImage to_picture(const Raster& raster, int depth, const Pool& pool) {
   const Reduction reduced(raster, depth);
-  Picture picture{Image<Gray>(raster.size, pool), {}};
+  LoadedImage picture{Image<Gray>(raster.size, pool), {}};
   if (raster.channels == 3) picture.rgb = Image<Rgb>(raster.size, pool);
   for (int y = 0; y < raster.size.height; ++y) {
     const auto* from = raster.row<Sample>(y);
@@ -67,7 +67,7 @@ Picture to_picture(const Raster& raster, int depth, const Pool& pool) {
   return picture;
 }
 
-Picture picture_of(const Raster& raster, int depth, const Pool& pool) {
+LoadedImage picture_of(const Raster& raster, int depth, const Pool& pool) {
   return raster.bytes_each == 1 ? to_picture<std::uint8_t>(raster, depth, pool)
                                 : to_picture<std::uint16_t>(raster, depth, pool);
 }
@@ -93,12 +93,12 @@ void save(const fs::path& path, View<const T> image, int channels) {
 
 }  // namespace
 
-Picture load_picture(const fs::path& path, const Pool& pool) {
+LoadedImage load_picture(const fs::path& path, const Pool& pool) {
   const Raster raster = read_raster(path, Palette::colours);
   return picture_of(raster, depth_of(raster), pool);
 }
 
-PicturePair load_pair(const fs::path& left, const fs::path& right, const Pool& pool, int least_bits) {
+LoadedPair load_pair(const fs::path& left, const fs::path& right, const Pool& pool, int least_bits) {
   const Raster first = read_raster(left, Palette::colours);
   const Raster second = read_raster(right, Palette::colours);
   if (first.size != second.size) {
@@ -112,7 +112,7 @@ PicturePair load_pair(const fs::path& left, const fs::path& right, const Pool& p
   return pair_of(first, second, pool, least_bits);
 }
 
-PicturePair pair_of(const Raster& left, const Raster& right, const Pool& pool, int least_bits) {
+LoadedPair pair_of(const Raster& left, const Raster& right, const Pool& pool, int least_bits) {
   if (left.size != right.size)
     throw Error("the left image is " + text(left.size) + ", the right one " + text(right.size));
   if (left.bytes_each != right.bytes_each) {
@@ -166,7 +166,7 @@ void save_png(const fs::path& path, View<const Reject> image) {
   save(path, image, 1);
 }
 
-void save_png(const fs::path& path, View<const Space> image) {
+void save_png(const fs::path& path, View<const ObstacleLabel> image) {
   save(path, image, 1);
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cairn/core/image.hpp>
-#include <cairn/objects/space.hpp>
+#include <cairn/objects/obstacles.hpp>
 #include <cairn/stereo/reject.hpp>
 #include <cstdint>
 #include <filesystem>
@@ -16,14 +16,14 @@
 namespace cairn::io {
 
 /// An image as the core needs it: 8 bits.
-struct Picture {
+struct LoadedImage {
   Image<Gray> gray;  // (77 R + 150 G + 29 B + 128) >> 8
   Image<Rgb> rgb;    // empty if the file is grey
 };
 
-struct PicturePair {
-  Picture left;
-  Picture right;
+struct LoadedPair {
+  LoadedImage left;
+  LoadedImage right;
   int bits = 8;  // needed by the brighter image
 };
 
@@ -31,13 +31,13 @@ struct PicturePair {
 /// the brightest sample (PGM and PPM declare it in their header). So 10, 12 and 16 bit cameras keep their
 /// full contrast, whether their bits are at the low or the high end, and 8-bit data in 16-bit files is
 /// unchanged. Alpha and the orientation tag of JPEG are ignored: calibrations refer to stored pixels.
-Picture load_picture(const std::filesystem::path& path, const Pool& pool = {});
+LoadedImage load_picture(const std::filesystem::path& path, const Pool& pool = {});
 
 /// Both images, reduced by the same shift (that of the brighter one), so that a difference in exposure is
 /// kept. Deep images that need less than `least_bits` are reduced as if they needed those, so that the frames
 /// of a sequence have one scale. Also throws Error if sizes differ, or only one has 8 bits.
-PicturePair load_pair(const std::filesystem::path& left, const std::filesystem::path& right,
-                      const Pool& pool = {}, int least_bits = 8);
+LoadedPair load_pair(const std::filesystem::path& left, const std::filesystem::path& right,
+                     const Pool& pool = {}, int least_bits = 8);
 
 /// The grey of colours, (77 R + 150 G + 29 B + 128) >> 8.
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool = {});
@@ -56,7 +56,7 @@ void save_png(const std::filesystem::path& path, View<const std::uint8_t> image)
 void save_png(const std::filesystem::path& path, View<const std::uint16_t> image);
 void save_png(const std::filesystem::path& path, View<const Rgb> image);
 void save_png(const std::filesystem::path& path, View<const Reject> image);
-void save_png(const std::filesystem::path& path, View<const Space> image);
+void save_png(const std::filesystem::path& path, View<const ObstacleLabel> image);
 
 /// The bytes of a PNG file of `image`. Throws Error if that is empty.
 std::string png_bytes(View<const Rgb> image);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::size_t kMostPictureBytes = std::size_t{1} << 31;
+constexpr std::size_t kMaxPictureBytes = std::size_t{1} << 31;
 
 }  // namespace
 
@@ -29,10 +29,10 @@ Raster decode_raster(std::string_view file, Palette palette) {
 }
 
 void check_sides(std::int64_t width, std::int64_t height) {
-  const auto fits = [](std::int64_t side) { return side >= 1 && side <= kMostPixelsPerSide; };
-  if (fits(width) && fits(height) && width * height <= kMostPixels) return;
+  const auto fits = [](std::int64_t side) { return side >= 1 && side <= kMaxPixelsPerSide; };
+  if (fits(width) && fits(height) && width * height <= kMaxPixels) return;
   throw Error("claims " + std::to_string(width) + "x" + std::to_string(height) + " pixels, expected 1 ... " +
-              std::to_string(kMostPixelsPerSide) + " per side and at most " + std::to_string(kMostPixels));
+              std::to_string(kMaxPixelsPerSide) + " per side and at most " + std::to_string(kMaxPixels));
 }
 
 void check_memory() {
@@ -40,7 +40,7 @@ void check_memory() {
 }
 
 Raster read_raster(const std::filesystem::path& path, Palette palette) {
-  const std::string file = read_file(path, kMostPictureBytes);
+  const std::string file = read_file(path, kMaxPictureBytes);
   try {
     return decode_raster(file, palette);
   } catch (const Error& error) {

@@ -15,11 +15,11 @@
 /// Decoded images as stored in the file; internal to io. image_files and disparity_files convert them.
 namespace cairn::io {
 
-inline constexpr int kMostPixelsPerSide = 32768;
-inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+inline constexpr int kMaxPixelsPerSide = 32768;
+inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 
-/// Throws Error (without a file name) unless both sides are in 1 … kMostPixelsPerSide and the area ≤
-/// kMostPixels.
+/// Throws Error (without a file name) unless both sides are in 1 … kMaxPixelsPerSide and the area ≤
+/// kMaxPixels.
 void check_sides(std::int64_t width, std::int64_t height);
 
 /// Samples, rows top-down without padding, channels interleaved (grey or R, G, B), in native byte order.
@@ -50,7 +50,7 @@ Raster read_raster(const std::filesystem::path& path, Palette palette);
 Raster decode_raster(std::string_view file, Palette palette);
 
 /// Both reduced to 8 bits as in load_pair(). Throws Error, without file names, if sizes or depths differ.
-PicturePair pair_of(const Raster& left, const Raster& right, const Pool& pool, int least_bits = 8);
+LoadedPair pair_of(const Raster& left, const Raster& right, const Pool& pool, int least_bits = 8);
 
 /// Call after a C library has failed: throws std::bad_alloc if the cause is missing memory (errno, which the
 /// caller set to 0 before), which is no fault of the file.

@@ -67,10 +67,10 @@ Destination& destination(j_compress_ptr jpeg) {
 }
 /// Grows the buffer beyond `used` bytes. No exception may cross libjpeg, and no destructor its longjmp.
 void make_room(j_compress_ptr jpeg, std::size_t used) {
-  constexpr std::size_t kLeast = std::size_t{1} << 16;
+  constexpr std::size_t kMin = std::size_t{1} << 16;
   bool has_room = true;
   try {
-    destination(jpeg).file.resize(std::max(kLeast, 2 * used));
+    destination(jpeg).file.resize(std::max(kMin, 2 * used));
   } catch (const std::exception&) {
     has_room = false;
   }

@@ -54,7 +54,7 @@ bool is_of_rectified_pair(const fs::path& path) {
 }  // namespace
 
 RawCalibration load_raw_calibration(const fs::path& path) {
-  const std::string text = read_file(path, kMostTextBytes);
+  const std::string text = read_file(path, kMaxTextBytes);
   try {
     RawCalibration calibration = read_raw(text, path);
     check(calibration);

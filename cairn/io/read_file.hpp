@@ -13,6 +13,6 @@ namespace cairn::io {
 std::string read_file(const std::filesystem::path& path, std::size_t most_bytes);
 
 /// Size limit of text files (calibration, configuration).
-inline constexpr std::size_t kMostTextBytes = std::size_t{1} << 20;
+inline constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20;
 
 }  // namespace cairn::io

@@ -53,13 +53,13 @@ std::string counts_to_text(const std::vector<std::int64_t>& counts) {
 }
 
 std::vector<std::int64_t> text_to_counts(std::string_view text) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 40;  // far above any image; prevents overflow of the sums
+  constexpr std::int64_t kMax = std::int64_t{1} << 40;  // far above any image; prevents overflow of the sums
   std::vector<std::int64_t> counts;
   for (std::size_t at = 0; at < text.size();) {
     std::int64_t count = read_number(text, at);
-    if (count < -kMost || count > kMost) throw Error("run-length mask: a run of impossible length");
+    if (count < -kMax || count > kMax) throw Error("run-length mask: a run of impossible length");
     if (counts.size() >= kDifferencesFrom) count += counts[counts.size() - 2];
-    if (count < 0 || count > kMost) throw Error("run-length mask: a run of impossible length");
+    if (count < 0 || count > kMax) throw Error("run-length mask: a run of impossible length");
     counts.push_back(count);
   }
   return counts;

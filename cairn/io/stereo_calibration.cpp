@@ -176,9 +176,9 @@ std::optional<Corners> find_board(View<const Gray> image, const Board& board) {
 }
 
 StereoCalibration calibrate_stereo(std::span<const BoardSighting> sightings, const Board& board, Size image) {
-  if (sightings.size() < kLeastSightings) {
+  if (sightings.size() < kMinSightings) {
     throw Error("calibrating: the whole board is visible in " + std::to_string(sightings.size()) +
-                " pairs, expected at least " + std::to_string(kLeastSightings) + ", preferably fifteen");
+                " pairs, expected at least " + std::to_string(kMinSightings) + ", preferably fifteen");
   }
   return with_opencv("calibrating", [&] { return calibrate(sightings, board, image); });
 }
@@ -210,19 +210,19 @@ Rectifier::Rectifier(const RawCalibration& calibration) : maps_(std::make_unique
 
 Rectifier::~Rectifier() = default;
 
-PicturePair Rectifier::operator()(const PicturePair& raw, const Pool& pool) const {
+LoadedPair Rectifier::operator()(const LoadedPair& raw, const Pool& pool) const {
   if (raw.left.gray.size() != maps_->size) {
     throw Error("the calibration is for " + text(maps_->size) + ", the images are " +
                 text(raw.left.gray.size()));
   }
   return with_opencv("rectifying", [&] {
-    const auto rectified = [&](const Picture& picture, const cv::Mat& x, const cv::Mat& y) {
-      Picture result{remapped(picture.gray, x, y, pool), {}};
+    const auto rectified = [&](const LoadedImage& picture, const cv::Mat& x, const cv::Mat& y) {
+      LoadedImage result{remapped(picture.gray, x, y, pool), {}};
       if (!picture.rgb.empty()) result.rgb = remapped(picture.rgb, x, y, pool);
       return result;
     };
-    return PicturePair{rectified(raw.left, maps_->left_x, maps_->left_y),
-                       rectified(raw.right, maps_->right_x, maps_->right_y), raw.bits};
+    return LoadedPair{rectified(raw.left, maps_->left_x, maps_->left_y),
+                      rectified(raw.right, maps_->right_x, maps_->right_y), raw.bits};
   });
 }
 

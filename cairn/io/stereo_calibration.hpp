@@ -40,10 +40,10 @@ struct StereoCalibration {
   std::vector<double> pair_error_px;  // of the worse camera, one per sighting
 };
 
-inline constexpr std::size_t kLeastSightings = 3;
+inline constexpr std::size_t kMinSightings = 3;
 
 /// Both cameras and their relative pose, from one board in several positions (Zhang 2000). Throws Error with
-/// fewer than kLeastSightings, or if OpenCV finds no solution.
+/// fewer than kMinSightings, or if OpenCV finds no solution.
 StereoCalibration calibrate_stereo(std::span<const BoardSighting> sightings, const Board& board, Size image);
 
 /// Rectifies images of raw cameras.
@@ -57,7 +57,7 @@ class Rectifier {
 
   /// Takes images of the calibrated size; areas beyond their border become black. Throws Error for other
   /// sizes.
-  [[nodiscard]] PicturePair operator()(const PicturePair& raw, const Pool& pool = {}) const;
+  [[nodiscard]] LoadedPair operator()(const LoadedPair& raw, const Pool& pool = {}) const;
   /// The calibration of the rectified pair.
   [[nodiscard]] const StereoRig& rig() const { return rig_; }
   /// The rotation from the raw left camera to the rectified one, row-major.

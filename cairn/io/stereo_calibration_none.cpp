@@ -25,7 +25,7 @@ Rectifier::Rectifier(const RawCalibration&) {
   not_built_in();
 }
 Rectifier::~Rectifier() = default;
-PicturePair Rectifier::operator()(const PicturePair&, const Pool&) const {
+LoadedPair Rectifier::operator()(const LoadedPair&, const Pool&) const {
   not_built_in();
 }
 

@@ -64,10 +64,10 @@ std::string place(const std::filesystem::path& path, std::size_t line) {
 }
 
 std::string quoted(std::string_view text) {
-  constexpr std::size_t kMost = 40;
+  constexpr std::size_t kMax = 40;
   std::string shown = "'";
-  for (const char c : text.substr(0, kMost)) shown += c >= 0x20 && c < 0x7f ? c : '?';
-  return shown + (text.size() > kMost ? "...'" : "'");
+  for (const char c : text.substr(0, kMax)) shown += c >= 0x20 && c < 0x7f ? c : '?';
+  return shown + (text.size() > kMax ? "...'" : "'");
 }
 
 std::string text_of(const char* format, double value) {

@@ -12,7 +12,7 @@
 namespace cairn::io {
 
 /// A generous limit: an hour of an IMU at 1 kHz has half of it.
-inline constexpr std::size_t kMostLogBytes = std::size_t{1} << 30;
+inline constexpr std::size_t kMaxLogBytes = std::size_t{1} << 30;
 
 struct TextLine {
   std::size_t number = 0;  // from 1

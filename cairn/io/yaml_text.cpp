@@ -9,7 +9,7 @@
 namespace cairn::io {
 namespace {
 
-constexpr int kMostValues = 200'000;
+constexpr int kMaxValues = 200'000;
 
 /// Parses a text without storing anything.
 class Check : public YAML::EventHandler {
@@ -40,7 +40,7 @@ class Check : public YAML::EventHandler {
 
  private:
   void count(const YAML::Mark& mark) {
-    if (++values_ > kMostValues) throw YAML::ParserException(mark, "too many values for a file of this kind");
+    if (++values_ > kMaxValues) throw YAML::ParserException(mark, "too many values for a file of this kind");
   }
 
   int document_ = -1;

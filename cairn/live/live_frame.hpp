@@ -62,7 +62,7 @@ class Products {
 /// The results of one pair, shared by all sinks, hence immutable.
 struct LiveFrame {
   std::shared_ptr<const io::SequenceFrame> pair;
-  Step step;
+  TrackedFrame step;
   std::vector<LandmarkOfTrack> landmarks;
   std::vector<LandmarkEvent> events;
   std::optional<Pose> map_from_odom;  // nullopt if unknown

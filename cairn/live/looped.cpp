@@ -11,9 +11,9 @@ namespace {
 using io::Sequence;
 using io::SequenceFrame;
 
-class Looped : public Sequence {
+class LoopedSequence : public Sequence {
  public:
-  explicit Looped(std::function<std::unique_ptr<Sequence>()> open)
+  explicit LoopedSequence(std::function<std::unique_ptr<Sequence>()> open)
       : open_(std::move(open)), inner_(open_()), rig_(inner_->rig()), size_(inner_->image_size()) {
     if (inner_->status().is_live)
       throw Error(inner_->name() + ": is a camera, expected a source with an end to repeat");
@@ -64,7 +64,7 @@ class Looped : public Sequence {
 }  // namespace
 
 std::unique_ptr<Sequence> looped(std::function<std::unique_ptr<Sequence>()> open) {
-  return std::make_unique<Looped>(std::move(open));
+  return std::make_unique<LoopedSequence>(std::move(open));
 }
 
 }  // namespace cairn::live

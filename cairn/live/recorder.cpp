@@ -114,7 +114,7 @@ void Recording::add_config(const LiveFrame& frame) {
 struct Recorder::State {
   State(RecordedRun of, RecorderOptions how) : run(std::move(of)), options(std::move(how)) {}
 
-  struct Waiting {
+  struct WaitingFrame {
     LiveFramePtr frame;
     std::uint64_t skipped_before = 0;
   };
@@ -128,7 +128,7 @@ struct Recorder::State {
   std::thread thread;
   mutable std::mutex mutex;  // guards all members below
   std::condition_variable changed;
-  std::deque<Waiting> queue;
+  std::deque<WaitingFrame> queue;
   std::uint64_t skipped_before = 0;
   std::uint64_t in_file = 0;  // frames written; those in the current chunk are not
   bool is_stopping = false;
@@ -206,7 +206,7 @@ void Recorder::offer(const LiveFramePtr& frame) {
 void Recorder::State::write_all() {
   try {
     while (true) {
-      Waiting next;
+      WaitingFrame next;
       {
         std::unique_lock lock(mutex);
         changed.wait_for(lock, std::chrono::seconds(1), [&] { return !queue.empty() || is_stopping; });

@@ -26,7 +26,7 @@ Exec noting_stages(Exec exec, std::vector<io::StageTime>& stages) {
 
 }  // namespace
 
-Runner::Runner(io::Sequence& source, const std::string& source_name, const io::CompanionFiles& files,
+Runner::Runner(io::Sequence& source, const std::string& source_name, const io::SensorFiles& files,
                FollowConfig config, LiveOptions options, const Exec& exec)
     : source_(source),
       image_size_(source.image_size()),

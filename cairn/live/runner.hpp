@@ -55,7 +55,7 @@ struct LiveSummary {
 class Runner {
  public:
   /// `source` and the sinks must outlive it. Throws Error like SequenceRun.
-  Runner(io::Sequence& source, const std::string& source_name, const io::CompanionFiles& files,
+  Runner(io::Sequence& source, const std::string& source_name, const io::SensorFiles& files,
          FollowConfig config, LiveOptions options, const Exec& exec);
   void add(Sink& sink) { sinks_.push_back(&sink); }
 

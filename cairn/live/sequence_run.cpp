@@ -29,12 +29,12 @@ std::vector<TimedPose> known_poses(const fs::path& path) {
 /// The pose nearest in time; nullopt without any.
 std::optional<Pose> pose_at(const std::vector<TimedPose>& poses, Stamp stamp, const std::string& file) {
   if (poses.empty()) return std::nullopt;
-  constexpr std::int64_t kFarthest = 5'000'000;  // ns
+  constexpr std::int64_t kMaxDistance = 5'000'000;  // ns
   auto best = std::ranges::lower_bound(poses, stamp, {}, &TimedPose::stamp);
   if (best == poses.end() ||
       (best != poses.begin() && stamp.ns - std::prev(best)->stamp.ns < best->stamp.ns - stamp.ns))
     --best;
-  if (std::abs(best->stamp.ns - stamp.ns) > kFarthest)
+  if (std::abs(best->stamp.ns - stamp.ns) > kMaxDistance)
     throw Error(file + ": has no pose within 5 ms of the stamp " + std::to_string(stamp.ns) + " ns");
   return best->map_from_camera;
 }
@@ -49,7 +49,7 @@ std::unique_ptr<MotionPriors> open_priors(const std::optional<fs::path>& odometr
   return nullptr;
 }
 
-SequenceRun::SequenceRun(const Sequence& source, std::string source_name, const CompanionFiles& files,
+SequenceRun::SequenceRun(const Sequence& source, std::string source_name, const SensorFiles& files,
                          FollowConfig config, Exec exec)
     : source_(source),
       source_name_(std::move(source_name)),
@@ -68,12 +68,13 @@ SequenceRun::SequenceRun(const Sequence& source, std::string source_name, const 
   }
 }
 
-Step SequenceRun::next(const SequenceFrame& frame) {
+TrackedFrame SequenceRun::next(const SequenceFrame& frame) {
   std::optional<MotionPrior> prior;
   if (priors_ && has_begun_) prior = priors_->between(before_, frame.stamp, camera_from_level(pose_before_));
   if (frame.after_gap) follower_.forget();
-  Step step = follower_.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp,
-                             prior, pose_at(poses_, frame.stamp, poses_name_), scan_at(scans_, frame.stamp));
+  TrackedFrame step =
+      follower_.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp, prior,
+                     pose_at(poses_, frame.stamp, poses_name_), scan_at(scans_, frame.stamp));
   if (source_.rig()) mark(step, frame);
   has_begun_ = true;
   before_ = step.stamp;
@@ -81,7 +82,7 @@ Step SequenceRun::next(const SequenceFrame& frame) {
   return step;
 }
 
-void SequenceRun::mark(const Step& step, const SequenceFrame& frame) {
+void SequenceRun::mark(const TrackedFrame& step, const SequenceFrame& frame) {
   const bool writes = map_ && !is_map_read_only_;
   if (!has_begun_) {
     const std::int64_t run = writes ? map_->begin_run(without_password(source_name_), step.stamp) : 0;

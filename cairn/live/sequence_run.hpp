@@ -19,7 +19,7 @@ namespace cairn::io {
 
 /// Data files of other sensors for a sequence. At most one of odometry, imu and poses; all are in metres, so
 /// the source needs a rig.
-struct CompanionFiles {
+struct SensorFiles {
   std::optional<std::filesystem::path> odometry;
   std::optional<std::filesystem::path> imu;
   std::optional<std::filesystem::path> poses;
@@ -41,15 +41,15 @@ class SequenceRun {
  public:
   /// Opens the files; the run of a map begins with the first frame. Throws Error like the readers,
   /// MapFile::open() and Follower, and for poses without stamps. `source` must outlive it.
-  SequenceRun(const Sequence& source, std::string source_name, const CompanionFiles& files,
-              FollowConfig config, Exec exec);
+  SequenceRun(const Sequence& source, std::string source_name, const SensorFiles& files, FollowConfig config,
+              Exec exec);
 
   /// The next frame of the source. Throws Error like Follower::next() and MapFile::write(), and if the known
   /// poses have none within 5 ms of its stamp.
-  Step next(const SequenceFrame& frame);
+  TrackedFrame next(const SequenceFrame& frame);
 
   /// The landmarks of the last frame; empty without a rig.
-  [[nodiscard]] const Landmarked& marked() const { return marked_; }
+  [[nodiscard]] const LandmarkUpdate& marked() const { return marked_; }
   [[nodiscard]] const FollowConfig& config() const { return follower_.config(); }
   /// Like Follower::set_config().
   void set_config(FollowConfig config) { follower_.set_config(std::move(config)); }
@@ -57,7 +57,7 @@ class SequenceRun {
   void close(RunState state);
 
  private:
-  void mark(const Step& step, const SequenceFrame& frame);
+  void mark(const TrackedFrame& step, const SequenceFrame& frame);
 
   const Sequence& source_;
   std::string source_name_;
@@ -70,7 +70,7 @@ class SequenceRun {
   bool is_map_read_only_ = false;
   std::optional<Pose> start_;
   bool has_begun_ = false;
-  Landmarked marked_;
+  LandmarkUpdate marked_;
   Stamp before_;
   Pose pose_before_;
 };

@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, kBiasFeatures> kNames{
 constexpr double kMiddle = 0.5;  // of a row
 constexpr double kEnds = 0.75;
 constexpr double kUpper = 0.3;  // of half of the height, above the centroid
-constexpr std::size_t kFewest = 4;
+constexpr std::size_t kMin = 4;
 constexpr double kSigmaFromPlane = 0.5;  // px: a plane is a coarse model
 
 /// The pixels of an object in a row, from the first to the last.
@@ -44,7 +44,7 @@ struct Row {
 };
 
 float median(std::vector<float>& values, float otherwise, const Exec& exec) {
-  if (values.size() < kFewest) return otherwise;
+  if (values.size() < kMin) return otherwise;
   return values_at_ranks(values, values.size() / 2, values.size() / 2, exec).first;
 }
 
@@ -57,11 +57,11 @@ struct Plane {
 
 /// `points` relative to the centroid. Unlike PlaneFit::solve(), this also fits masks of two columns.
 Plane plane_of(const PlaneFit& points) {
-  constexpr double kFewestPixels = 20;
-  constexpr double kLeastDeterminant = 1e-6;
-  if (points.count() < kFewestPixels) return {};
+  constexpr double kMinPixels = 20;
+  constexpr double kMinDeterminant = 1e-6;
+  if (points.count() < kMinPixels) return {};
   const PlaneFit::Moments m = points.moments();
-  if (!(m.determinant() > kLeastDeterminant)) return {m.mean_d, 0, 0};
+  if (!(m.determinant() > kMinDeterminant)) return {m.mean_d, 0, 0};
   const double per_x = m.slope_x();
   const double per_y = m.slope_y();
   return {m.mean_d - per_x * m.mean_x - per_y * m.mean_y, per_x, per_y};
@@ -75,7 +75,7 @@ struct Brightness {
 };
 
 /// One object and the images that show it.
-struct Seen {
+struct ObjectView {
   const Object& object;
   View<const ObjectId> labels;
   View<const float> disparity_px;
@@ -143,7 +143,7 @@ struct Seen {
   [[nodiscard]] BiasFeatures features(double shift_px) const;
 };
 
-Brightness Seen::brightness(const std::vector<Row>& rows) const {
+Brightness ObjectView::brightness(const std::vector<Row>& rows) const {
   constexpr double kDark = 8;  // grey levels
   const double n = object.pixel_count;
   double x_sum = 0;
@@ -167,7 +167,7 @@ Brightness Seen::brightness(const std::vector<Row>& rows) const {
   return {x_sum / n, y_sum / n, slope};
 }
 
-BiasFeatures Seen::features(double shift_px) const {
+BiasFeatures ObjectView::features(double shift_px) const {
   const std::vector<Row> all = rows();
   const float d0 = object.disparity_px;
   const Brightness grey = brightness(all);
@@ -242,7 +242,7 @@ std::vector<BiasFeatures> bias_features(const Objects& objects, const std::vecto
   std::vector<BiasFeatures> features(objects.list.size());
   parallel_for(exec, static_cast<int>(features.size()), 1, [&](int first, int last) {
     for (auto i = slot(first); i < slot(last); ++i) {
-      const Seen seen{objects.list[i], objects.labels, disparity.disparity_px, left, right, exec};
+      const ObjectView seen{objects.list[i], objects.labels, disparity.disparity_px, left, right, exec};
       features[i] = seen.features(shift_px[i]);
     }
   });

@@ -132,9 +132,9 @@ float sigma_px(std::span<float> disparities_px, float valid_share, const Exec& e
 }
 
 /// Farther points are ignored: their coordinates would overflow when rotated.
-constexpr float kFarthest = 1e6F;  // m
+constexpr float kMaxDistance = 1e6F;  // m
 bool is_near(Vec3 p) {
-  return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+  return std::abs(p.x) <= kMaxDistance && std::abs(p.y) <= kMaxDistance && std::abs(p.z) <= kMaxDistance;
 }
 
 /// Points of a surface, one list per axis.
@@ -180,7 +180,7 @@ Points points_of(const Part& part, Disparities disparities_px, const StereoRig& 
   for (const Stretch& stretch : part.main) {
     const int length = stretch.length();
     const int near = run.points_in_camera(rig, {stretch.first, stretch.y}, length, disparities_px(stretch),
-                                          kFarthest, points.from(count));
+                                          kMaxDistance, points.from(count));
     if (near < length) points.keep_near(count, length);
     count += slot(near);
   }
@@ -279,7 +279,7 @@ float radians(int degrees) {
 int closest_yaw(const Points& points, const Exec& exec) {
   constexpr std::size_t kEnough = 512;  // points for finding the yaw
   constexpr int kCoarse = 6;            // degrees
-  static_assert(rank_of(kTail, kEnough) < kernels::TurnedRectangles::kMostTail);
+  static_assert(rank_of(kTail, kEnough) < kernels::TurnedRectangles::kMaxTail);
   const Plan plan = plan_of(points, std::min(points.size(), kEnough));
   const kernels::PointKernels& run = kernels::point_kernels(exec);
   int best = 0;

@@ -69,7 +69,7 @@ struct Inputs {
 constexpr float kEdgeMin = 4.0F;          // grey levels …
 constexpr float kEdgeNoiseFactor = 3.0F;  // … plus deviations of the image noise
 
-constexpr int kMostSummed = 8192;  // pixels whose colours are looked up at once
+constexpr int kMaxSummed = 8192;  // pixels whose colours are looked up at once
 
 /// Surveys a band of rows.
 class Survey {
@@ -110,8 +110,8 @@ class Survey {
       if (outline.pixel_count == 0) outline.first_pixel = y * width + x;
       outline.pixel_count += run.length();
       outline.box = united(outline.box, run.box());
-      for (int first = x; first < run.last; first += kMostSummed)
-        add_colours(first, std::min(first + kMostSummed, run.last), outline.colour_sum);
+      for (int first = x; first < run.last; first += kMaxSummed)
+        add_colours(first, std::min(first + kMaxSummed, run.last), outline.colour_sum);
       outline.rim.add_cut(at_border * run.length());
       if (x > 0) add_step(outlines_[index(label[x - 1])], outline, is_edge(x - 1, y, x, y));
       x = run.last;

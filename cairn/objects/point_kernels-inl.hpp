@@ -8,7 +8,7 @@ namespace {
 inline int points_in_camera(const StereoRig& given, Point first, int count, const float* disparity_px,
                             float farthest_m, const PointLists& out) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  constexpr float kFarthest = std::numeric_limits<float>::max();
+  constexpr float kMaxDistance = std::numeric_limits<float>::max();
   const StereoRig rig = given;
   float* CAIRN_RESTRICT const x_m = out.x;
   float* CAIRN_RESTRICT const y_m = out.y;
@@ -18,7 +18,7 @@ inline int points_in_camera(const StereoRig& given, Point first, int count, cons
   for (int i = 0; i < count; ++i) {
     const float before_infinity = disparity_px[i] + rig.doffs_px;
     const float z = rig.focal_px * rig.baseline_m / before_infinity;
-    const bool seen = (before_infinity > 0) & (z <= kFarthest);
+    const bool seen = (before_infinity > 0) & (z <= kMaxDistance);
     const float x = (static_cast<float>(first.x + i) - rig.cx_px) * z / rig.focal_px;
     const float y = row * z / rig.focal_px;
     x_m[i] = seen ? x : kNone;
@@ -61,8 +61,8 @@ inline void find_sides(const float* xs, const float* ys, int count, std::size_t 
   const Values cosine = rectangles.cosine;
   const Values sine = rectangles.sine;
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    std::array<Values, TurnedRectangles::kMostTail> lowest;  // in order
-    std::array<Values, TurnedRectangles::kMostTail> highest;
+    std::array<Values, TurnedRectangles::kMaxTail> lowest;  // in order
+    std::array<Values, TurnedRectangles::kMaxTail> highest;
     for (Values& values : lowest) values.fill(kInfinity);
     for (Values& values : highest) values.fill(-kInfinity);
     for (int i = 0; i < count; ++i) {
@@ -74,7 +74,7 @@ inline void find_sides(const float* xs, const float* ys, int count, std::size_t 
         const float turned = cosine[k] * along + sine[k] * across;
         float low = turned;
         float high = turned;
-        for (std::size_t j = 0; j < TurnedRectangles::kMostTail; ++j) {
+        for (std::size_t j = 0; j < TurnedRectangles::kMaxTail; ++j) {
           const float lower = lowest[j][k];
           lowest[j][k] = low < lower ? low : lower;
           low = low > lower ? low : lower;

@@ -22,7 +22,7 @@ struct PointLists {
 /// additions.
 struct TurnedRectangles {
   static constexpr std::size_t kCount = 16;
-  static constexpr std::size_t kMostTail = 6;
+  static constexpr std::size_t kMaxTail = 6;
   template <class T>
   using Each = std::array<T, kCount>;
   Each<float> cosine{};  // of the yaw
@@ -45,7 +45,7 @@ struct PointKernels {
   void (*turn)(const float* xs, const float* ys, int count, float cosine, float sine, float* turned_xs,
                float* turned_ys);
   /// Moves the low sides of each rectangle to the value at rank `low_tail` of the points' turned coordinates, and the
-  /// high ones to that at rank `high_tail` from the top; rank 0 = the last one. Both < kMostTail, and there are more
+  /// high ones to that at rank `high_tail` from the top; rank 0 = the last one. Both < kMaxTail, and there are more
   /// points than that.
   void (*find_sides)(const float* xs, const float* ys, int count, std::size_t low_tail, std::size_t high_tail,
                      TurnedRectangles& rectangles);

@@ -11,7 +11,7 @@
 namespace cairn {
 namespace {
 
-constexpr std::size_t kMostBuckets = 1024;
+constexpr std::size_t kMaxBuckets = 1024;
 constexpr std::size_t kInBucket = 4;  // values on average, at least: few buckets are faster to search
 constexpr std::size_t kFew = 256;     // up to this many values, nth_element is faster than counting
 
@@ -71,8 +71,8 @@ class BucketCounts {
   std::span<const float> values_;
   kernels::Buckets buckets_;
   const kernels::LabelKernels& run_;
-  std::array<std::array<std::uint32_t, kMostBuckets>, 2> counts_;  // up to buckets_.last
-  std::size_t gathered_ = kMostBuckets;
+  std::array<std::array<std::uint32_t, kMaxBuckets>, 2> counts_;  // up to buckets_.last
+  std::size_t gathered_ = kMaxBuckets;
   std::vector<float> members_;
 };
 
@@ -83,7 +83,7 @@ std::pair<float, float> values_at_ranks(std::span<float> values, std::size_t low
   if (values.size() <= kFew) return by_parting(values, low, high);
   const kernels::LabelKernels& run = kernels::label_kernels(exec);
   const auto [least, most] = run.find_range(values.data(), values.size());
-  const std::size_t count = std::min(values.size() / kInBucket, kMostBuckets);
+  const std::size_t count = std::min(values.size() / kInBucket, kMaxBuckets);
   const float scale = static_cast<float>(count) / (most - least);
   if (!std::isfinite(scale) || !(scale > 0)) return by_parting(values, low, high);
   BucketCounts counted(values, {least, scale, static_cast<std::int32_t>(count) - 1}, run);

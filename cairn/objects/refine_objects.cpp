@@ -11,14 +11,14 @@
 namespace cairn {
 namespace {
 
-constexpr int kGrain = 64;          // rows
-constexpr double kDoubt = 0.08;     // px; also DOUBT of lab/fit.py
-constexpr double kMostBias = 1;     // px; also MOST_CORRECTION there
-constexpr double kMostShare = 0.5;  // of the disparity: a distant object stays in front of the camera
+constexpr int kGrain = 64;         // rows
+constexpr double kDoubt = 0.08;    // px; also DOUBT of lab/fit.py
+constexpr double kMaxBias = 1;     // px; also MOST_CORRECTION there
+constexpr double kMaxShare = 0.5;  // of the disparity: a distant object stays in front of the camera
 
 /// Predictions are uncertain, and most disparities are right, so each is reduced by kDoubt.
 double beyond_doubt(double bias) {
-  return std::copysign(std::clamp(std::abs(bias) - kDoubt, 0.0, kMostBias), bias);
+  return std::copysign(std::clamp(std::abs(bias) - kDoubt, 0.0, kMaxBias), bias);
 }
 
 /// Pixels of a row whose neighbours up to kOutline on both sides belong to the same object and have a disparity.
@@ -80,7 +80,7 @@ Objects refine_objects(Objects objects, const DisparityMap& disparity, View<cons
   const std::vector<BiasFeatures> features = bias_features(objects, shifts, disparity, left, right, exec);
   for (std::size_t i = 0; i < objects.list.size(); ++i) {
     float& d = objects.list[i].disparity_px;
-    const double most = kMostShare * std::abs(double{d});
+    const double most = kMaxShare * std::abs(double{d});
     d = static_cast<float>(double{d} + std::clamp(shifts[i] + beyond_doubt(bias(features[i])), -most, most));
   }
   number_by_distance(objects, exec);

@@ -32,7 +32,7 @@ struct TrackLabels {
   std::map<std::int64_t, Rect> boxes;
 };
 
-TrackLabels track_labels_of(const Step& step) {
+TrackLabels track_labels_of(const TrackedFrame& step) {
   TrackLabels shown{Image<ObjectId>(step.ids.size()), {}};
   for (int y = 0; y < step.ids.height(); ++y) {
     for (int x = 0; x < step.ids.width(); ++x)
@@ -54,11 +54,11 @@ Rle rle_of(const TrackLabels& shown, TrackId id) {
 }
 
 /// Without a rig there are no metric positions, so the pose is null.
-bool has_place(const Step& step) {
+bool has_place(const TrackedFrame& step) {
   return !step.is_lost && step.motion.refusal != MotionRefusal::no_rig;
 }
 
-Json pose_json(const Step& step) {
+Json pose_json(const TrackedFrame& step) {
   if (!has_place(step)) return nullptr;
   Json turn = Json::array();
   for (const double entry : quaternion(step.map_from_camera)) turn.push_back(rounded(entry));
@@ -203,7 +203,7 @@ std::string step_json(const Step& step, const std::string& name, const Landmarke
   return json_text(json_of(step, name, marked.tracks, frame_id)) + "\n";
 }
 
-std::string pose_tum(const Step& step) {
+std::string pose_tum(const TrackedFrame& step) {
   if (!has_place(step)) return {};
   const Point3 p = step.map_from_camera.translation_m;
   const auto q = quaternion(step.map_from_camera);
@@ -213,7 +213,7 @@ std::string pose_tum(const Step& step) {
   return seconds_text(step.stamp) + text.data();
 }
 
-std::string masks_mots(const Step& step) {
+std::string masks_mots(const TrackedFrame& step) {
   const TrackLabels shown = track_labels_of(step);
   std::string lines;
   for (const Track& track : step.tracks.list) {
@@ -225,7 +225,7 @@ std::string masks_mots(const Step& step) {
   return lines;
 }
 
-Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const Step& step) {
+Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const TrackedFrame& step) {
   // Objects with their track ids, by which the overlay colours and labels them.
   TrackLabels shown = track_labels_of(step);
   Objects tracked;

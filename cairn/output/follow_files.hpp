@@ -14,21 +14,21 @@
 namespace cairn::io {
 
 /// A frame of tracks.jsonl (docs/formats.md): one line of JSON, with the newline.
-std::string step_json(const Step& step, const std::string& name, const Landmarked& marked = {},
+std::string step_json(const TrackedFrame& step, const std::string& name, const LandmarkUpdate& marked = {},
                       const std::string& frame_id = {});
 
 /// Whether the frame is the one at which a run of weak frames is reported, in events.jsonl.
 bool becomes_unreliable(const Step& step);
 
 /// A line of poses.tum: "t x y z qx qy qz qw", t in s; empty if the pose is unknown.
-std::string pose_tum(const Step& step);
+std::string pose_tum(const TrackedFrame& step);
 
 /// The masks of a frame in the text form of MOTS (Voigtlaender et al. 2019), one line each: "frame id class
 /// height width rle".
-std::string masks_mots(const Step& step);
+std::string masks_mots(const TrackedFrame& step);
 
 /// The left image with every tracked object tinted, outlined and labelled with track id and distance.
-Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const Step& step);
+Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const TrackedFrame& step);
 
 /// The output files of a sequence in a folder. Text files grow by whole lines and are valid at any time;
 /// older results are replaced when the first frame arrives.

@@ -30,7 +30,7 @@ bool is_empty(View<const std::uint8_t> mask) {
 }
 
 /// `slot`: as in the map, the index of the track in the list, from 1.
-Json label_places(const Step& step) {
+Json label_places(const TrackedFrame& step) {
   Json all = Json::array();
   for (std::size_t i = 0; i < step.tracks.list.size(); ++i) {
     const Track& track = step.tracks.list[i];
@@ -79,7 +79,7 @@ Json facts(Json line, const Step& step, std::optional<double> milliseconds,
 }
 
 /// The index of each pixel's track in the list, from 1: smaller than ids, which grow.
-Json packed_tracks(const Step& step) {
+Json packed_tracks(const TrackedFrame& step) {
   const auto& list = step.tracks.list;  // sorted by id
   TrackId before = TrackId::none;
   long number_before = 0;

@@ -18,9 +18,9 @@ namespace cairn::io {
 /// A step as text. `facts`: its line of tracks.jsonl without masks, and the label position of each track;
 /// `maps`: the left image as JPEG, and for each pixel 0 or 1 + the index of its track in the list of `facts`,
 /// lossless. `milliseconds`: the time of the frame.
-EncodedFrame encode_step(const Step& step, const std::string& name, View<const Gray> left,
+EncodedFrame encode_step(const TrackedFrame& step, const std::string& name, View<const Gray> left,
                          View<const Rgb> left_rgb, std::optional<double> milliseconds = std::nullopt,
-                         const Landmarked& marked = {});
+                         const LandmarkUpdate& marked = {});
 
 struct FollowPageHead {
   std::string title;  // the source

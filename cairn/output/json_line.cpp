@@ -7,7 +7,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostShown = 40;
+constexpr std::size_t kMaxShown = 40;
 constexpr int kDeepest = 64;
 
 bool is_too_deep(const std::string& text) {
@@ -39,7 +39,7 @@ std::optional<Json> parsed_json(const std::string& text) {
 
 std::string shown(const Json& value) {
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > kMostShown) text = text.substr(0, kMostShown) + "…";
+  if (text.size() > kMaxShown) text = text.substr(0, kMaxShown) + "…";
   return text;
 }
 
@@ -63,9 +63,9 @@ std::optional<std::int64_t> JsonLine::maybe_integer(const char* key, std::int64_
   const Json& value = at(key);
   if (value.is_null()) return std::nullopt;
   const std::string expected = "a whole number from " + std::to_string(least) +
-                               (most == kMostNumber ? " on" : " to " + std::to_string(most));
+                               (most == kMaxNumber ? " on" : " to " + std::to_string(most));
   if (!value.is_number_integer()) refuse(key, expected);
-  if (value.is_number_unsigned() && value.get<std::uint64_t>() > static_cast<std::uint64_t>(kMostNumber))
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() > static_cast<std::uint64_t>(kMaxNumber))
     refuse(key, expected);
   const auto number = value.get<std::int64_t>();
   if (number < least || number > most) refuse(key, expected);
@@ -104,7 +104,7 @@ bool JsonLine::fill(const char* key, double* numbers, std::size_t count) const {
     }
     if (!value[i].is_number()) refuse(key, expected);
     numbers[i] = value[i].get<double>();
-    if (!(std::abs(numbers[i]) <= kFarthest)) refuse(key, expected);
+    if (!(std::abs(numbers[i]) <= kMaxDistance)) refuse(key, expected);
   }
   return is_known;
 }

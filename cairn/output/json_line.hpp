@@ -26,8 +26,8 @@ std::string shown(const nlohmann::json& value);
 /// null value counts as missing.
 class JsonLine {
  public:
-  static constexpr std::int64_t kMostNumber = std::numeric_limits<std::int64_t>::max();
-  static constexpr double kFarthest = 1e9;  // m, m², m/s: no valid number is larger
+  static constexpr std::int64_t kMaxNumber = std::numeric_limits<std::int64_t>::max();
+  static constexpr double kMaxDistance = 1e9;  // m, m², m/s: no valid number is larger
 
   explicit JsonLine(const nlohmann::json& object);
 

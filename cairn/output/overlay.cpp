@@ -109,7 +109,7 @@ Image<Rgb> enlarged(View<const Gray> left, View<const Rgb> left_rgb, int factor)
 /// The gain that makes the brightest hundredth of the image bright.
 float brightening(View<const Gray> left) {
   constexpr int kBright = 200;
-  constexpr float kMost = 8;
+  constexpr float kMax = 8;
   std::array<std::int64_t, 256> counts{};
   for (int y = 0; y < left.height(); ++y) {
     for (int x = 0; x < left.width(); ++x) ++counts[left(x, y)];
@@ -123,7 +123,7 @@ float brightening(View<const Gray> left) {
     break;
   }
   constexpr int kDim = 128;
-  return level < kDim ? std::min(static_cast<float>(kBright) / static_cast<float>(level), kMost) : 1.0F;
+  return level < kDim ? std::min(static_cast<float>(kBright) / static_cast<float>(level), kMax) : 1.0F;
 }
 
 void brighten(Image<Rgb>& canvas, float factor) {

@@ -93,7 +93,7 @@ Json json(const EpipolarOffset& epipolar) {
   return j;
 }
 
-Json json(const LeftOut& left) {
+Json json(const RejectedObstacle& left) {
   const Rect box = left.box_px;
   Json j;
   j["reason"] = choice_name(left.reason, kLeftOutReasons);
@@ -110,7 +110,7 @@ Json scan_json(const Frame& frame, const Provenance& provenance) {
   const auto floor = floor_frame(frame.ground, provenance.rig);
   if (!floor) return nullptr;
   const ObstacleScan scan = scan_obstacles(frame.space, frame.disparity.disparity_px, *floor, *provenance.rig,
-                                           provenance.config.space);
+                                           provenance.config.obstacles);
   Json ranges = Json::array();
   for (const float range : scan.ranges_m) ranges.push_back(json(range));
   return {{"angle_min_rad", json(scan.angle_min_rad)},
@@ -167,7 +167,7 @@ void add_findings(Json& j, const Frame& frame, const Provenance& provenance) {
   j["objects"] = Json::array();
   for (const Object& object : frame.objects.list) j["objects"].push_back(json(object, frame.objects.labels));
   j["left_out"] = Json::array();
-  for (const LeftOut& left : frame.left_out) j["left_out"].push_back(json(left));
+  for (const RejectedObstacle& left : frame.left_out) j["left_out"].push_back(json(left));
   j["obstacle_scan"] = frame.space.empty() ? Json(nullptr) : scan_json(frame, provenance);
 }
 
@@ -317,7 +317,7 @@ bool wants_grid(const Result& r) {
 ObstacleGrid grid_of(const Result& r) {
   return map_obstacles(r.frame.space, r.frame.disparity.disparity_px,
                        *floor_frame(r.frame.ground, r.provenance.rig), *r.provenance.rig,
-                       r.provenance.config.space);
+                       r.provenance.config.obstacles);
 }
 
 /// In the format of ROS map_server: the row with the greatest y first.
@@ -370,9 +370,10 @@ constexpr std::array kResultFiles{
                [](const fs::path& path, const Result& r) {
                  save_png(path, View<const std::uint8_t>(r.frame.floor));
                }},
-    ResultFile{
-        "space.png", [](const Result& r) { return !r.frame.space.empty(); },
-        [](const fs::path& path, const Result& r) { save_png(path, View<const Space>(r.frame.space)); }},
+    ResultFile{"space.png", [](const Result& r) { return !r.frame.space.empty(); },
+               [](const fs::path& path, const Result& r) {
+                 save_png(path, View<const ObstacleLabel>(r.frame.space));
+               }},
     ResultFile{"depth.png", wants_depth,
                [](const fs::path& path, const Result& r) { save_depth(path, depth_m(r)); }},
     ResultFile{"depth.npy", wants_depth,
@@ -558,10 +559,10 @@ namespace {
 
 /// JSON's integer conversions do not check the range.
 ObjectId id_of(const nlohmann::json& value) {
-  constexpr std::int64_t kMost = 65'535;
-  if (!value.is_number_integer() || value < 1 || value > kMost) {
+  constexpr std::int64_t kMax = 65'535;
+  if (!value.is_number_integer() || value < 1 || value > kMax) {
     throw Error("an object's `id` is " + (value.is_number() ? value.dump() : std::string("no number")) +
-                ", expected a whole number from 1 to " + std::to_string(kMost));
+                ", expected a whole number from 1 to " + std::to_string(kMax));
   }
   return ObjectId{value.get<std::int32_t>()};
 }
@@ -569,8 +570,8 @@ ObjectId id_of(const nlohmann::json& value) {
 }  // namespace
 
 std::vector<ObjectConfidence> load_confidences(const fs::path& path) {
-  constexpr std::size_t kMost = std::size_t{256} << 20;
-  const std::string text = read_file(path, kMost);
+  constexpr std::size_t kMax = std::size_t{256} << 20;
+  const std::string text = read_file(path, kMax);
   try {
     std::vector<ObjectConfidence> all;
     const auto whole = nlohmann::json::parse(text);

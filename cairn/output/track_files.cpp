@@ -23,11 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::int64_t kMostFrames = 10'000'000;
-constexpr std::int64_t kMostSide = 65'535;
-constexpr std::size_t kMostLine = std::size_t{64} << 20;
-constexpr std::size_t kMostShown = 40;
-constexpr std::int64_t kMostNumber = JsonLine::kMostNumber;
+constexpr std::int64_t kMaxFrames = 10'000'000;
+constexpr std::int64_t kMaxSide = 65'535;
+constexpr std::size_t kMaxLine = std::size_t{64} << 20;
+constexpr std::size_t kMaxShown = 40;
+constexpr std::int64_t kMaxNumber = JsonLine::kMaxNumber;
 
 std::optional<Pose> pose_in(const JsonLine& line) {
   if (line.at("pose").is_null()) return std::nullopt;
@@ -46,10 +46,10 @@ Rle mask_in(const JsonLine& track) {
   const JsonLine rle(track.at("rle"));
   const Json& size = rle.at("size");
   const auto is_side = [](const Json& side) {
-    return side.is_number_integer() && side >= 1 && side <= kMostSide;
+    return side.is_number_integer() && side >= 1 && side <= kMaxSide;
   };
   if (!size.is_array() || size.size() != 2 || !is_side(size[0]) || !is_side(size[1]))
-    rle.refuse("size", "[height, width] from 1 to " + std::to_string(kMostSide));
+    rle.refuse("size", "[height, width] from 1 to " + std::to_string(kMaxSide));
   return {{size[1].get<int>(), size[0].get<int>()}, rle.text("counts")};
 }
 
@@ -66,12 +66,12 @@ TrackState state_in(const JsonLine& track) {
 TrackRecord track_of(const Json& json) {
   const JsonLine line(json);
   TrackRecord track;
-  track.id = TrackId{line.integer("id", 1, kMostNumber)};
+  track.id = TrackId{line.integer("id", 1, kMaxNumber)};
   track.state = state_in(line);
   track.is_moving = line.flag("moving");
   track.position_m = line.maybe_point("position_m");
   track.covariance_m2 = line.maybe_numbers<9>("covariance_m2");
-  track.landmark = line.maybe_integer("landmark", 0, kMostNumber);
+  track.landmark = line.maybe_integer("landmark", 0, kMaxNumber);
   if (!line.at("rle").is_null()) track.mask = mask_in(line);
   return track;
 }
@@ -79,9 +79,9 @@ TrackRecord track_of(const Json& json) {
 TrackFrame frame_of(const Json& json) {
   const JsonLine line(json);
   TrackFrame frame;
-  frame.index = line.integer("frame", 0, kMostFrames);
+  frame.index = line.integer("frame", 0, kMaxFrames);
   frame.name = line.text("name");
-  frame.stamp = Stamp{line.integer("stamp_ns", std::numeric_limits<std::int64_t>::min(), kMostNumber)};
+  frame.stamp = Stamp{line.integer("stamp_ns", std::numeric_limits<std::int64_t>::min(), kMaxNumber)};
   frame.map_from_camera = pose_in(line);
   if (!line.at("motion").is_null()) {
     const JsonLine motion(line.at("motion"));
@@ -131,7 +131,7 @@ void each_line(const fs::path& path,
         has_end = true;
         break;
       }
-      if (text.size() == kMostLine) throw Error(where() + "is longer than 64 MiB");
+      if (text.size() == kMaxLine) throw Error(where() + "is longer than 64 MiB");
       text.push_back(static_cast<char>(c));
     }
     if (file.bad()) throw Error(path.string() + ": cannot be read");
@@ -164,7 +164,7 @@ bool each_json(const fs::path& path, const std::function<void(const Json&, std::
 }
 
 std::int64_t number_in(const std::string& word, const char* what, std::int64_t least, std::int64_t most) {
-  const std::string expected = std::string(what) + " is `" + word.substr(0, kMostShown) +
+  const std::string expected = std::string(what) + " is `" + word.substr(0, kMaxShown) +
                                "`, expected a whole number from " + std::to_string(least) + " to " +
                                std::to_string(most);
   const bool are_digits =
@@ -203,18 +203,18 @@ TrackFile load_tracks(const fs::path& path) {
 }
 
 TrackFile load_mots(const fs::path& path) {
-  constexpr std::int64_t kMostOfMots = 1'000'000;  // missing frames are filled in up to this number
+  constexpr std::int64_t kMaxOfMots = 1'000'000;  // missing frames are filled in up to this number
   constexpr std::int64_t kIgnored = 10;
   std::map<std::int64_t, std::map<std::int64_t, TrackRecord>> masks;
   each_line(path, [&](const std::string& text, std::size_t, bool) {
     const std::vector<std::string> word = words_of(text);
     if (word.size() != 6)
-      throw Error("found `" + text.substr(0, kMostShown) + "`, expected `frame id class height width rle`");
-    const std::int64_t frame = number_in(word[0], "the frame", 0, kMostOfMots);
+      throw Error("found `" + text.substr(0, kMaxShown) + "`, expected `frame id class height width rle`");
+    const std::int64_t frame = number_in(word[0], "the frame", 0, kMaxOfMots);
     const std::int64_t id = number_in(word[1], "the id", 1, (std::int64_t{1} << 31) - 1);
     const std::int64_t kind = number_in(word[2], "the class", 0, std::int64_t{1} << 31);
-    const auto height = static_cast<int>(number_in(word[3], "the height", 1, kMostSide));
-    const auto width = static_cast<int>(number_in(word[4], "the width", 1, kMostSide));
+    const auto height = static_cast<int>(number_in(word[3], "the height", 1, kMaxSide));
+    const auto width = static_cast<int>(number_in(word[4], "the width", 1, kMaxSide));
     TrackRecord track;
     track.id = TrackId{id};
     track.mask = Rle{{width, height}, word[5]};
@@ -242,10 +242,10 @@ std::vector<ChangeRecord> load_changes(const fs::path& path) {
   each_json(path, [&](const Json& json, std::size_t) {
     const JsonLine line(json);
     ChangeRecord change;
-    change.frame = line.integer("frame", 0, kMostFrames);
+    change.frame = line.integer("frame", 0, kMaxFrames);
     change.kind = line.text("kind");
-    change.landmark = line.maybe_integer("landmark", 0, kMostNumber);
-    if (const auto track = line.maybe_integer("track", 0, kMostNumber)) change.track = TrackId{*track};
+    change.landmark = line.maybe_integer("landmark", 0, kMaxNumber);
+    if (const auto track = line.maybe_integer("track", 0, kMaxNumber)) change.track = TrackId{*track};
     change.from_m = line.maybe_point("from_m");
     change.to_m = line.maybe_point("to_m");
     changes.push_back(std::move(change));

@@ -150,7 +150,7 @@ Trajectory load_folder(const fs::path& folder) {
 }  // namespace
 
 Pose load_pose(const fs::path& path) {
-  const std::string text = read_file(path, kMostTextBytes);
+  const std::string text = read_file(path, kMaxTextBytes);
   std::vector<double> values;
   for (const TextLine& line : lines_of(text)) {
     for (const std::string_view field : fields_of(line.text)) {
@@ -173,8 +173,8 @@ Pose load_pose(const fs::path& path) {
 Trajectory load_trajectory(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return load_folder(path);
-  constexpr std::size_t kMostBytes = std::size_t{256} << 20;
-  const std::string text = read_file(path, kMostBytes);
+  constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+  const std::string text = read_file(path, kMaxBytes);
   Trajectory all;
   std::optional<TrajectoryForm> form;
   for (const TextLine& line : lines_of(text)) {
@@ -198,7 +198,7 @@ Trajectory load_trajectory(const fs::path& path) {
   number_stamps(all.poses);
   if (fs::is_regular_file(times, ignored)) {
     std::vector<Stamp> stamps;
-    const std::string times_text = read_file(times, kMostBytes);
+    const std::string times_text = read_file(times, kMaxBytes);
     for (const TextLine& line : lines_of(times_text))
       stamps.push_back(stamp_in(parse_seconds(line.text), line.text, place(times, line.number)));
     all.has_stamps = take_stamps(all.poses, stamps);

@@ -87,8 +87,8 @@ void validate(const Config& config, Size image, bool has_rig) {
     throw Error("option match.window_size: a window of " + option_walk::write(window) +
                 " px does not fit into an image of " + text(image));
   }
-  constexpr int kLeast = 3;  // px
-  if (!has_window && (image.width < kLeast || image.height < kLeast)) {
+  constexpr int kMin = 3;  // px
+  if (!has_window && (image.width < kMin || image.height < kMin)) {
     throw Error("option match.method: semi_global needs an image of at least 3x3, found one of " +
                 text(image));
   }

@@ -5,11 +5,11 @@
 #include <array>
 #include <cairn/core/fields.hpp>
 #include <cairn/objects/measure.hpp>
-#include <cairn/objects/space.hpp>
-#include <cairn/regions/evidence.hpp>
+#include <cairn/objects/obstacles.hpp>
 #include <cairn/regions/segment_disparity.hpp>
 #include <cairn/regions/segment_intensity.hpp>
 #include <cairn/regions/superpixels.hpp>
+#include <cairn/regions/textured.hpp>
 #include <cairn/scene/background.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <cairn/stereo/epipolar_correction.hpp>
@@ -58,13 +58,13 @@ struct Config {
   TextureConfig texture{.threshold = -1.0F};
   GroundConfig ground;
   SpeckleConfig speckle;
-  EvidenceConfig evidence;
+  TexturedConfig textured;
   BackgroundConfig background;
   IntensityConfig intensity;
   DisparityConfig disparity;
   SuperpixelsConfig superpixels;
   ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.3F};
-  SpaceConfig space;
+  ObstaclesConfig obstacles;
 
   /// The method of the paper; the thresholds are ours, fitted by lab/search_paper.cpp.
   static Config paper();
@@ -91,7 +91,7 @@ void for_each_section(C& c, F&& visit) {
   visit("disparity", c.disparity);
   visit("superpixels", c.superpixels);
   visit("objects", c.objects);
-  visit("space", c.space);
+  visit("obstacles", c.obstacles);
 }
 
 /// One option, for the reference page, the command line and bindings.

@@ -9,7 +9,7 @@
 namespace cairn {
 namespace {
 
-StereoMatch match_pair(FrameInput& in, const Run& run, Observed& stage) {
+StereoMatch match_pair(FrameInput& in, const Run& run, StageClock& stage) {
   const auto& [rig, config, exec] = run;
   StereoMatch found;
   auto pair = StereoPair::from(in.left.gray, in.right, in.left.rgb);
@@ -37,7 +37,7 @@ StereoMatch match_pair(FrameInput& in, const Run& run, Observed& stage) {
 
 }  // namespace
 
-StereoMatch match_and_check(FrameInput& in, const Run& run, Observed& stage) {
+StereoMatch match_and_check(FrameInput& in, const Run& run, StageClock& stage) {
   StereoMatch found = in.right.empty() ? StereoMatch{{std::move(in.disparity)}} : match_pair(in, run, stage);
   in.left.noise_sigma = stage("noise_sigma", noise_sigma(in.left.gray, run.exec));
   return found;

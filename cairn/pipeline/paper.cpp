@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // The paper's method: one call per stage, in the order of the data.
-#include <cairn/core/later.hpp>
+#include <cairn/core/future.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <cairn/stereo/confidence.hpp>
@@ -10,7 +10,7 @@
 
 namespace cairn {
 
-StereoMatch stereo_by_paper(FrameInput& in, const Run& run, Observed& stage) {
+StereoMatch stereo_by_paper(FrameInput& in, const Run& run, StageClock& stage) {
   const auto& [rig, config, exec] = run;
   StereoMatch found = match_and_check(in, run, stage);
   auto& [disparity, ground, floor, epipolar, confidence] = found.stereo;
@@ -25,18 +25,18 @@ StereoMatch stereo_by_paper(FrameInput& in, const Run& run, Observed& stage) {
 
 Frame segment_by_paper(FrameInput in, const Run& run) {
   const auto& [rig, config, exec] = run;
-  Observed stage(exec);
+  StageClock stage(exec);
   StereoMatch match = stereo_by_paper(in, run, stage);
   Frame frame{std::move(match.stereo)};
   frame.floor = stage("label_floor", label_floor(frame.disparity, frame.ground, rig, config.ground, exec));
 
   // Growing by disparity uses one thread; the left image is segmented at the same time.
-  Later<Segmentation> by_intensity(exec, [&](const Exec& concurrent) {
+  Future<Segmentation> by_intensity(exec, [&](const Exec& concurrent) {
     return segment_intensity(in.left.gray, run.config.intensity, concurrent);
   });
 
   // (The memory pool of the left image's regions may still be in use.)
-  Later<Image<float>> confidence(exec.beside(), [&](const Exec& concurrent) {
+  Future<Image<float>> confidence(exec.beside(), [&](const Exec& concurrent) {
     return estimate_confidence(match.matches, frame.disparity, confidence_model(run.config.match.method),
                                concurrent);
   });
@@ -55,10 +55,12 @@ Frame segment_by_paper(FrameInput in, const Run& run) {
 
   // Other obstacles.
   const Background none;
-  const SpaceCues seen{frame.disparity, {}, frame.confidence, frame.ground, none, {}, frame.objects.labels};
+  const ObstacleCues seen{frame.disparity,     {}, frame.confidence, frame.ground, none, {},
+                          frame.objects.labels};
   const std::int64_t min_area = limits_of(config.objects, in.left.gray.size()).min_area;
-  frame.space = stage("label_space", label_space(seen, rig, config.ground, exec));
-  frame.left_out = stage("left_out_of", left_out_of(frame.space, seen, {}, rig, {min_area, 1}, exec));
+  frame.space = stage("label_obstacles", label_obstacles(seen, rig, config.ground, exec));
+  frame.left_out =
+      stage("rejected_obstacles", rejected_obstacles(frame.space, seen, {}, rig, {min_area, 1}, exec));
   return frame;
 }
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // The method with pipeline.method=region_tree: one call per stage, in the order of the data.
-#include <cairn/core/later.hpp>
+#include <cairn/core/future.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/refine_objects.hpp>
 #include <cairn/pipeline/methods.hpp>
@@ -11,13 +11,13 @@
 
 namespace cairn {
 
-StereoMatch stereo_by_region_tree(FrameInput& in, const Run& run, Observed& stage) {
+StereoMatch stereo_by_region_tree(FrameInput& in, const Run& run, StageClock& stage) {
   const auto& [rig, config, exec] = run;
   StereoMatch found = match_and_check(in, run, stage);
   auto& [disparity, ground, floor, epipolar, confidence] = found.stereo;
 
   // Textured disparities show the ground, and the ground which matches are reflections in it.
-  found.textured_px = stage("find_evidence", find_evidence(in.left, disparity, config.evidence, exec));
+  found.textured_px = stage("select_textured", select_textured(in.left, disparity, config.textured, exec));
   ground = stage("fit_ground", fit_ground(found.textured_px, rig, config.ground, exec, in.left.gray));
   ground = stage("likely_ground",
                  likely_ground(ground, disparity, rig, config.ground, exec, found.textured_px, in.left.gray));
@@ -28,7 +28,7 @@ StereoMatch stereo_by_region_tree(FrameInput& in, const Run& run, Observed& stag
 }
 
 RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const HintNetwork* network,
-                                       Observed& stage) {
+                                       StageClock& stage) {
   const auto& [rig, config, exec] = run;
   RegionCandidates found{stereo_by_region_tree(in, run, stage)};
   const StereoResult& stereo = found.match.stereo;
@@ -36,13 +36,13 @@ RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const Hin
   // The background: walls, and the floor, also where it is reflective.
   found.background = stage(
       "fit_background", fit_background(found.match.textured_px, stereo.ground, rig, config.background, exec));
-  found.seen_px =
+  found.surface_disparity_px =
       stage("floor_under_reflections", floor_under_reflections(stereo.disparity, stereo.ground, exec));
 
   // Superpixels, and concurrently the hints of the network; both need the edges of the image.
   const Image<std::uint16_t> edges = stage("superpixel_edges", superpixel_edges(in.left, exec));
-  Later<Superpixels> superpixels(exec, [&](const Exec& concurrent) {
-    return cut_superpixels(edges.clone(concurrent.pool), found.seen_px, in.left.noise_sigma,
+  Future<Superpixels> superpixels(exec, [&](const Exec& concurrent) {
+    return cut_superpixels(edges.clone(concurrent.pool), found.surface_disparity_px, in.left.noise_sigma,
                            run.config.superpixels, concurrent);
   });
   if (network) {
@@ -55,27 +55,27 @@ RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const Hin
 
 Frame segment_by_region_tree(FrameInput in, const Run& run, const ObjectChoice& choose) {
   const auto& [rig, config, exec] = run;
-  Observed stage(exec);
+  StageClock stage(exec);
   RegionCandidates found = superpixel_candidates(in, run, &hint_network(), stage);
-  const auto& [match, seen_px, background, superpixels, hints, tree] = found;
+  const auto& [match, surface_disparity_px, background, superpixels, hints, tree] = found;
 
   // The tree of merged regions, and concurrently the confidence of the disparities.
-  Later<Image<float>> confidence(exec, [&](const Exec& concurrent) {
+  Future<Image<float>> confidence(exec, [&](const Exec& concurrent) {
     return estimate_confidence(found.match.matches, found.match.stereo.disparity,
                                confidence_model(run.config.match.method), concurrent);
   });
   found.tree =
-      stage("grow_merge_tree", grow_merge_tree(superpixels, found.cues(in.left), same_thing_trees(), exec));
+      stage("grow_merge_tree", grow_merge_tree(superpixels, found.cues(in.left), merge_classifier(), exec));
   found.match.stereo.confidence = stage("estimate_confidence", confidence.get());
 
   // The chosen regions as objects, with positions.
   const ChoiceLimits limits = limits_of(config.objects, in.left.gray.size());
   const ChosenObjects chosen =
       stage("choose_objects",
-            choose ? choose(found, limits) : choose_objects(tree, whole_object_trees(), limits, exec));
+            choose ? choose(found, limits) : choose_objects(tree, object_classifier(), limits, exec));
   Frame frame{std::move(found.match.stereo)};
-  frame.superpixels = stage("superpixels", segmentation_of(superpixels, in.left.gray, exec));
-  frame.groups = stage("groups", groups_of(superpixels, chosen, frame.disparity, exec));
+  frame.superpixels = stage("superpixels", superpixel_regions(superpixels, in.left.gray, exec));
+  frame.groups = stage("groups", object_regions(superpixels, chosen, frame.disparity, exec));
   frame.objects =
       stage("measure", measure(frame.groups.labels, chosen.scores, frame.disparity, in.left, exec));
   frame.objects =
@@ -84,13 +84,12 @@ Frame segment_by_region_tree(FrameInput in, const Run& run, const ObjectChoice& 
   frame.objects = stage("locate", locate(std::move(frame.objects), frame.disparity, frame.ground, rig, exec));
 
   // Other obstacles, and free floor.
-  const SpaceCues seen{frame.disparity,     seen_px,    frame.confidence,
-                       frame.ground,        background, superpixels.labels,
-                       frame.objects.labels};
-  frame.space = stage("label_space", label_space(seen, rig, config.ground, exec));
+  const ObstacleCues seen{frame.disparity, surface_disparity_px, frame.confidence,    frame.ground,
+                          background,      superpixels.labels,   frame.objects.labels};
+  frame.space = stage("label_obstacles", label_obstacles(seen, rig, config.ground, exec));
   const float wall_px = wall_tolerance_px(config.background, in.left.gray.size());
-  frame.left_out = stage(
-      "left_out_of", left_out_of(frame.space, seen, chosen.likeliest, rig, {limits.min_area, wall_px}, exec));
+  frame.left_out = stage("rejected_obstacles", rejected_obstacles(frame.space, seen, chosen.likeliest, rig,
+                                                                  {limits.min_area, wall_px}, exec));
   if (frame.ground.plane) frame.floor = floor_of(frame.space, exec);
   return frame;
 }

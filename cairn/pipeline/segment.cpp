@@ -17,7 +17,7 @@ ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {
 StereoResult estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
                                 const Config& config, const Exec& exec) {
   validate(config, pair.size(), rig.has_value());
-  Observed stage(exec);
+  StageClock stage(exec);
   FrameInput in = FrameInput::from(pair);
   const bool by_paper = config.pipeline.method == Method::paper;
   auto [stereo, matches, right, textured_px] = by_paper

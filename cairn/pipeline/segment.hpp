@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cairn/objects/fuse.hpp>
-#include <cairn/objects/space.hpp>
+#include <cairn/objects/obstacles.hpp>
 #include <cairn/pipeline/input.hpp>
 #include <cairn/regions/choose_objects.hpp>
 
@@ -31,8 +31,8 @@ struct Frame : StereoResult {
   Segmentation groups{};
   Objects objects{};
   // Obstacles for a robot, whether objects or not.
-  Image<Space> space{};             // obstacle, floor or unknown
-  std::vector<LeftOut> left_out{};  // obstacles that are not objects, nearest first, and why
+  Image<ObstacleLabel> space{};              // obstacle, floor or unknown
+  std::vector<RejectedObstacle> left_out{};  // obstacles that are not objects, nearest first, and why
 };
 
 /// The limits of an object in an image of this size, for choose_objects().

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/regions/choose_objects.hpp>
-#include <cairn/regions/segmentation_of.hpp>
+#include <cairn/regions/superpixel_regions.hpp>
 #include <cmath>
 
 namespace cairn {
@@ -66,8 +66,8 @@ ChosenObjects choose_by_scores(const MergeTree& tree, std::vector<float> scores,
   return chosen;
 }
 
-Segmentation groups_of(const Superpixels& superpixels, const ChosenObjects& chosen,
-                       const DisparityMap& disparity, const Exec& exec) {
+Segmentation object_regions(const Superpixels& superpixels, const ChosenObjects& chosen,
+                            const DisparityMap& disparity, const Exec& exec) {
   Image<RegionId> labels(superpixels.labels.size(), exec.pool);
   for (int y = 0; y < labels.height(); ++y) {
     const RegionId* const superpixel = superpixels.labels.row(y);
@@ -75,7 +75,7 @@ Segmentation groups_of(const Superpixels& superpixels, const ChosenObjects& chos
                    [&](RegionId i) { return RegionId{chosen.object_of[index(i)]}; });
   }
   Segmentation groups =
-      segmentation_of(std::move(labels), chosen.scores.size(), exec, [&](const Run& run, Region& region) {
+      superpixel_regions(std::move(labels), chosen.scores.size(), exec, [&](const Run& run, Region& region) {
         const float* const disparity_px = disparity.disparity_px.row(run.y);
         int count = region.valid_count;
         double sum = region.mean;

@@ -37,7 +37,7 @@ ChosenObjects choose_by_scores(const MergeTree& tree, std::vector<float> scores,
 
 /// The objects as regions 1, 2 … with the statistics of their disparities, in px; region 0 is the rest
 /// (is_background).
-Segmentation groups_of(const Superpixels& superpixels, const ChosenObjects& chosen,
-                       const DisparityMap& disparity, const Exec& exec);
+Segmentation object_regions(const Superpixels& superpixels, const ChosenObjects& chosen,
+                            const DisparityMap& disparity, const Exec& exec);
 
 }  // namespace cairn

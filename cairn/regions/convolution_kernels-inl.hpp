@@ -9,9 +9,9 @@ namespace {
 
 inline void convolve(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out) {
   const auto least = static_cast<float>(by.least);
-  const auto greatest = static_cast<float>(kGreatestActivation);
+  const auto greatest = static_cast<float>(kMaxActivation);
   for (int x = 0; x < width; ++x) {
-    std::array<std::int32_t, kMostOutputs> sums;
+    std::array<std::int32_t, kMaxOutputs> sums;
     std::copy_n(by.bias, by.outputs, sums.begin());
     const std::int16_t* weights = by.weights;
     for (int row = 0; row < by.side; ++row) {
@@ -49,7 +49,7 @@ constexpr int kLanes = static_cast<int>(hn::MaxLanes(Sums()));
 /// Outputs from sums of products.
 HWY_INLINE void put(hn::Vec<Sums> sum, const Convolution& by, int output, std::int16_t* out) {
   const auto least = hn::Set(Scales(), static_cast<float>(by.least));
-  const auto greatest = hn::Set(Scales(), static_cast<float>(kGreatestActivation));
+  const auto greatest = hn::Set(Scales(), static_cast<float>(kMaxActivation));
   const auto biased = hn::Add(sum, hn::LoadU(Sums(), by.bias + output));
   const auto value = hn::Mul(hn::ConvertTo(Scales(), biased), hn::LoadU(Scales(), by.scale + output));
   // Rounds to nearest: the sum has no bits left for fractions. NearestInt() would also look for overflows.
@@ -174,7 +174,7 @@ HWY_INLINE void transform_tile(const std::int16_t* const* rows, const std::ptrdi
     }
     for (int c = 0; c < 4; ++c) {
       transform(across[0][c], across[1][c], across[2][c], across[3][c], down);
-      for (int r = 0; r < 4; ++r) hn::StoreU(down[r], d, to + (4 * r + c) * kTiles * kMostOutputs + i);
+      for (int r = 0; r < 4; ++r) hn::StoreU(down[r], d, to + (4 * r + c) * kTiles * kMaxOutputs + i);
     }
   }
 }
@@ -202,14 +202,14 @@ HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const C
 #pragma GCC unroll 12
       for (int t = 0; t < kTiles; ++t) {
         std::int32_t both = 0;
-        std::memcpy(&both, tiles + t * kMostOutputs + i, sizeof both);
+        std::memcpy(&both, tiles + t * kMaxOutputs + i, sizeof both);
         const auto two = hn::BitCast(pairs, hn::Set(d, both));
 #pragma GCC unroll 12
         for (int v = 0; v < kCount; ++v)
           sums[t][v] = hn::ReorderWidenMulAccumulate(d, two, w[v], sums[t][v], others[t][v]);
       }
     }
-    tiles += kTiles * kMostOutputs;
+    tiles += kTiles * kMaxOutputs;
 #pragma GCC unroll 12
     for (int t = 0; t < kTiles; ++t) {
 #pragma GCC unroll 12
@@ -241,13 +241,13 @@ HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const C
 
 inline void convolve_two(const std::int16_t* const* rows, const Convolution& by, int width,
                          std::int16_t* const* out) {
-  HWY_ALIGN std::int16_t tiles[kPlaces * kTiles * kMostOutputs];
+  HWY_ALIGN std::int16_t tiles[kPlaces * kTiles * kMaxOutputs];
   for (int x = 0; x < width; x += 2 * kTiles) {
     for (int t = 0; t < kTiles; ++t) {
       // Where the width is odd, the last column has no neighbour, and no output depends on it.
       std::ptrdiff_t columns[4];
       for (int c = 0; c < 4; ++c) columns[c] = std::ptrdiff_t{std::min(x + 2 * t + c, width + 1)} * by.inputs;
-      transform_tile(rows, columns, by.inputs, tiles + t * kMostOutputs);
+      transform_tile(rows, columns, by.inputs, tiles + t * kMaxOutputs);
     }
     int output = 0;
     for (; output + kTogether * kLanes <= by.outputs; output += kTogether * kLanes)

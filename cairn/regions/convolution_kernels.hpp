@@ -8,7 +8,7 @@
 /// The kernels of hint_objects(), per row; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
-/// A convolution of integers. `inputs` is even, `outputs` a multiple of 8 up to kMostOutputs.
+/// A convolution of integers. `inputs` is even, `outputs` a multiple of 8 up to kMaxOutputs.
 struct Convolution {
   int inputs = 0;
   int outputs = 0;
@@ -24,22 +24,22 @@ struct Convolution {
 };
 
 /// The largest number of outputs.
-inline constexpr int kMostOutputs = 48;
+inline constexpr int kMaxOutputs = 48;
 
 /// The number of elements of a transformed tile of convolve_two().
 inline constexpr int kPlaces = 16;
 
 /// The limit of an output: no sum of products can then exceed 32 bits.
-inline constexpr int kGreatestActivation = 8191;
+inline constexpr int kMaxActivation = 8191;
 
 /// Integer sums, one multiplication by a float, rounded to nearest: the same bits on every target.
 struct ConvolutionKernels {
   /// `rows`: the `side` rows of the window, channels interleaved, from the window's first
   /// column of the first output on. Output o of pixel x, at out[x · outputs + o], is
-  /// (bias[o] + Σ weights · inputs) · scale[o], rounded, from `least` to kGreatestActivation.
+  /// (bias[o] + Σ weights · inputs) · scale[o], rounded, from `least` to kMaxActivation.
   void (*convolve)(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out);
   /// The same for two neighbouring rows of outputs, with fewer multiplications. `rows`: the four rows of inputs.
-  /// `out[1]` may be nullptr. Preconditions: side 3, stride 1, `inputs` a multiple of 8 up to kMostOutputs.
+  /// `out[1]` may be nullptr. Preconditions: side 3, stride 1, `inputs` a multiple of 8 up to kMaxOutputs.
   void (*convolve_two)(const std::int16_t* const* rows, const Convolution& by, int width,
                        std::int16_t* const* out);
 };

@@ -95,12 +95,12 @@ FittedTrees load_trees(std::span<const std::byte> file) {
   return {base, roots, reader.next<FittedTrees::Node>()};
 }
 
-const FittedTrees& same_thing_trees() {
+const FittedTrees& merge_classifier() {
   static const FittedTrees trees = load_trees(fitted::same_thing());
   return trees;
 }
 
-const FittedTrees& whole_object_trees() {
+const FittedTrees& object_classifier() {
   static const FittedTrees trees = load_trees(fitted::whole_object());
   return trees;
 }

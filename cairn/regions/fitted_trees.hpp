@@ -53,8 +53,8 @@ class FittedTrees {
 FittedTrees load_trees(std::span<const std::byte> file);
 
 /// The log-odds that two neighbouring regions belong to one object, from merge_features().
-const FittedTrees& same_thing_trees();
+const FittedTrees& merge_classifier();
 /// The log-odds that a region is exactly one whole object, from object_features().
-const FittedTrees& whole_object_trees();
+const FittedTrees& object_classifier();
 
 }  // namespace cairn

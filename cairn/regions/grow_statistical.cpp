@@ -12,22 +12,22 @@ namespace cairn {
 namespace {
 
 /// A region with its raster position in the upper half, so that sorting does not access the regions.
-using Placed = std::uint64_t;
-Placed placed(const GrowingRegions& regions, std::int32_t region) {
+using PlacedRegion = std::uint64_t;
+PlacedRegion placed(const GrowingRegions& regions, std::int32_t region) {
   return (static_cast<std::uint64_t>(regions.place(region)) << 32U) | static_cast<std::uint32_t>(region);
 }
-std::int32_t region_of(Placed entry) {
+std::int32_t region_of(PlacedRegion entry) {
   return static_cast<std::int32_t>(entry & 0xFFFFFFFFU);
 }
 
 /// Sorts lists that are nearly in order: late entries are sorted apart and merged. Reuses its memory.
 class SortStragglers {
  public:
-  void operator()(std::vector<Placed>& entries) {
+  void operator()(std::vector<PlacedRegion>& entries) {
     late_.clear();
     std::size_t kept = 0;
-    Placed last = 0;
-    for (const Placed entry : entries) {
+    PlacedRegion last = 0;
+    for (const PlacedRegion entry : entries) {
       if (entry < last) {
         late_.push_back(entry);
       } else {
@@ -43,13 +43,13 @@ class SortStragglers {
   }
 
  private:
-  std::vector<Placed> late_;
-  std::vector<Placed> sorted_;
+  std::vector<PlacedRegion> late_;
+  std::vector<PlacedRegion> sorted_;
 };
 
 /// A neighbour of the visited region. Only the visited region changes during a visit, so the mean is cached.
 struct Neighbour {
-  Placed entry;
+  PlacedRegion entry;
   double mean;
   bool operator<(const Neighbour& other) const { return entry < other.entry; }
 };
@@ -61,7 +61,7 @@ struct Visit {
   std::vector<Neighbour> neighbours;
   std::vector<Neighbour> gained;
   std::vector<Neighbour> merged;
-  std::vector<Placed> order;  // of the pass
+  std::vector<PlacedRegion> order;  // of the pass
   SortStragglers sort_order;
 };
 
@@ -160,7 +160,7 @@ bool grow(GrowingRegions& regions, std::int32_t region, const GrowCriteria& crit
 /// One pass over all living regions; false if nothing fused. A region is visited only if it is `stale`: its
 /// statistics or those of a neighbour changed since its last visit. Otherwise the outcome would be the same.
 bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::uint8_t>& stale, Visit& visit) {
-  std::vector<Placed>& order = visit.order;
+  std::vector<PlacedRegion>& order = visit.order;
   order.resize(slot(regions.count()) + 1);
   std::size_t count = 0;
   for (std::int32_t i = 0; i < regions.count(); ++i) {
@@ -171,7 +171,7 @@ bool pass(GrowingRegions& regions, const GrowCriteria& criteria, Scratch<std::ui
   // Basins are numbered in raster order, but a region takes the place of an earlier one that it absorbed.
   visit.sort_order(order);
   bool fused = false;
-  for (const Placed entry : order) {
+  for (const PlacedRegion entry : order) {
     const std::int32_t region = region_of(entry);
     if (!regions.is_alive(region)) continue;
     stale[region] = 0;
@@ -212,12 +212,12 @@ std::int32_t most_similar(GrowingRegions& regions, std::int32_t region) {
   const double mean = regions.hide_mean(region);
   const std::uint64_t none = ascending_bits(std::numeric_limits<double>::infinity());
   std::uint64_t least = none;
-  Placed best = 0;
+  PlacedRegion best = 0;
   // Without a branch, which would be unpredictable.
   regions.for_each_neighbour(region, [&](std::int32_t neighbour) {
     const double theirs = regions.mean(neighbour);
     const std::uint64_t value = ascending_bits(has_mean ? std::abs(mean - theirs) : theirs);
-    const Placed entry = placed(regions, neighbour);
+    const PlacedRegion entry = placed(regions, neighbour);
     const bool better = precedes(value, entry, least, best);
     least = better ? value : least;
     best = better ? entry : best;
@@ -251,7 +251,7 @@ class SmallRegions {
   }
   /// Requires is_small(region).
   void enter(std::int32_t region) {
-    const Placed entry = placed(regions_, region);
+    const PlacedRegion entry = placed(regions_, region);
     OfOneSize& list = lists_[regions_.pixel_count(region)];
     if (list.last < 0 || blocks_.begin()[list.last].count == kInBlock) {
       const auto block = static_cast<std::int32_t>(blocks_.size());
@@ -265,7 +265,7 @@ class SmallRegions {
   /// Calls fuse(region) for each small region; fuse() may enter larger ones.
   template <class Fuse>
   void for_each(Fuse fuse) {
-    std::vector<Placed> of_one_size;
+    std::vector<PlacedRegion> of_one_size;
     SortStragglers sort;
     for (std::int32_t pixels = 0; pixels < sizes_; ++pixels) {
       of_one_size.clear();
@@ -274,7 +274,7 @@ class SmallRegions {
         of_one_size.insert(of_one_size.end(), block.entries.begin(), block.entries.begin() + block.count);
       }
       sort(of_one_size);
-      for (const Placed entry : of_one_size) {
+      for (const PlacedRegion entry : of_one_size) {
         const std::int32_t region = region_of(entry);
         // It may have absorbed others meanwhile; it is then also entered under its larger size.
         if (regions_.is_alive(region) && regions_.pixel_count(region) == pixels) fuse(region);
@@ -288,7 +288,7 @@ class SmallRegions {
   struct alignas(64) Block {
     std::int32_t next;  // the next block of this size, −1 = none
     std::int32_t count;
-    std::array<Placed, kInBlock> entries;
+    std::array<PlacedRegion, kInBlock> entries;
   };
   struct OfOneSize {  // linked list of blocks, in the order of entry
     std::int32_t first;

@@ -16,8 +16,8 @@ namespace {
 
 using namespace kernels;
 
-constexpr int kGrain = 4;      // rows
-constexpr int kLeastSide = 8;  // cells
+constexpr int kGrain = 4;    // rows
+constexpr int kMinSide = 8;  // cells
 constexpr double kCells = 160.0 * 120;
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
@@ -86,9 +86,9 @@ struct RowTotal {
 };
 
 /// Processes the rows of cells in order.
-class Describing {
+class CellDescriber {
  public:
-  Describing(View<const std::uint16_t> edges, const Cues& cues, const Runs& across, const Exec& exec)
+  CellDescriber(View<const std::uint16_t> edges, const Cues& cues, const Runs& across, const Exec& exec)
       : edges_(edges),
         cues_(cues),
         across_(across),
@@ -109,7 +109,7 @@ class Describing {
                            cues_.left.rgb.empty() ? nullptr : cues_.left.rgb.row(y),
                            edges_.row(y),
                            cues_.disparity_px.row(y),
-                           cues_.evidence_px.row(y),
+                           cues_.textured_px.row(y),
                            behind_.ground.data(),
                            behind_.background.data()};
       run_.add_row(row, edges_.width(), columns_.sums);
@@ -215,8 +215,8 @@ Size hint_cells(Size image) {
   const double ratio = static_cast<double>(image.width) / image.height;
   const double width = std::sqrt(kCells * ratio);
   const auto rounded = [](double cells) {
-    constexpr double kMost = 1024;  // cells of a very long image
-    return std::max(1, static_cast<int>(std::lround(std::min(cells, kMost) / kLeastSide))) * kLeastSide;
+    constexpr double kMax = 1024;  // cells of a very long image
+    return std::max(1, static_cast<int>(std::lround(std::min(cells, kMax) / kMinSide))) * kMinSide;
   };
   return {rounded(width), rounded(width / ratio)};
 }
@@ -230,7 +230,7 @@ Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues
   std::vector<RowTotal> totals(slot(cells.height));
   const auto row = [&](int y) { return input.row(y + 1) + kHintChannels; };
   parallel_for(exec, cells.height, kGrain, [&](int first, int last) {
-    Describing describing(edges, cues, across, exec);
+    CellDescriber describing(edges, cues, across, exec);
     for (int y = first; y < last; ++y) {
       describing.sum_up(down.first[slot(y)], down.last[slot(y)]);
       totals[slot(y)] = describing.total();

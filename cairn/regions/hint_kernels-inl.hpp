@@ -22,7 +22,7 @@ inline void add_counts(const HintPixels& row, int width, std::int32_t* CAIRN_RES
                        std::int32_t* CAIRN_RESTRICT textured, std::int32_t* CAIRN_RESTRICT matched,
                        std::int32_t* CAIRN_RESTRICT above) {
   const std::uint16_t* const edge = row.edges;
-  const float* const evidence = row.evidence_px;
+  const float* const evidence = row.textured_px;
   const float* const disparity = row.disparity_px;
   const float* const ground = row.ground_px;
   for (int x = 0; x < width; ++x) {

@@ -17,7 +17,7 @@ struct HintPixels {
   const Rgb* rgb = nullptr;  // nullptr: the image has no colour
   const std::uint16_t* edges = nullptr;
   const float* disparity_px = nullptr;  // NaN = hole
-  const float* evidence_px = nullptr;
+  const float* textured_px = nullptr;
   const float* ground_px = nullptr;  // 0 above the horizon
   const float* background_px = nullptr;
 };

@@ -13,10 +13,10 @@ namespace {
 constexpr float kOneSuperpixel = 20.0F;  // the log-odds given to a superpixel, which has no parts
 constexpr int kMuch = 8;                 // a part of less than 1/8 of the other's area changes little
 
-class Growing {
+class TreeGrower {
  public:
-  Growing(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing, const Exec& exec,
-          const JudgedPair& on_judged)
+  TreeGrower(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing,
+             const Exec& exec, const JudgedPair& on_judged)
       : graph_(gather_cues(superpixels, cues, exec)),
         frame_(frame_cues(graph_, cues)),
         same_thing_(same_thing),
@@ -59,7 +59,7 @@ class Growing {
   }
 
  private:
-  struct Judged {
+  struct PairScore {
     float score = 0;
     std::int32_t version = 0;  // −1: the contact no longer exists
   };
@@ -95,7 +95,7 @@ class Growing {
     return features;
   }
   [[nodiscard]] Entry judged(std::int32_t contact, float score) {
-    Judged& judged = judged_[slot(contact)];
+    PairScore& judged = judged_[slot(contact)];
     judged.score = score;
     return {score, first_[slot(contact)], contact, judged.version, fusions_at(contact)};
   }
@@ -193,7 +193,7 @@ class Growing {
       MergeNode& part = tree_.nodes[slot(i)];
       part.whole = node;
       const float share = static_cast<float>(part.area) / static_cast<float>(area);
-      tell_end(part.features, share, score);
+      report_end(part.features, share, score);
       origin.least_same_thing = std::min(origin.least_same_thing, part.origin.least_same_thing);
       origin.larger_part = i == parts[0] ? share : std::max(origin.larger_part, share);
     }
@@ -214,7 +214,7 @@ class Growing {
   std::vector<std::int32_t> common_;  // during a merge: the contact with the region that is kept; −1 = none
   std::vector<std::int64_t> fusions_;  // of each region
   std::vector<std::int32_t> first_;    // of each contact: its rank in raster order of first occurrence
-  std::vector<Judged> judged_;         // each contact
+  std::vector<PairScore> judged_;      // each contact
   std::vector<Neighbour> neighbours_;  // of the region that describe() works on
   std::priority_queue<Entry> queue_;
   MergeTree tree_;
@@ -224,7 +224,7 @@ class Growing {
 
 MergeTree grow_merge_tree(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing,
                           const Exec& exec, const JudgedPair& on_judged) {
-  return Growing(superpixels, cues, same_thing, exec, on_judged).run();
+  return TreeGrower(superpixels, cues, same_thing, exec, on_judged).run();
 }
 
 }  // namespace cairn

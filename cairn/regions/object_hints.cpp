@@ -14,10 +14,10 @@
 namespace cairn {
 namespace {
 
-constexpr int kGrain = 4;         // rows
-constexpr int kMostLogOdds = 96;  // 1/16
-constexpr int kFarthest = 2000;   // 1/8 cell
-constexpr int kLargest = 320;     // 1/16 of log₂
+constexpr int kGrain = 4;           // rows
+constexpr int kMaxLogOdds = 96;     // 1/16
+constexpr int kMaxDistance = 2000;  // 1/8 cell
+constexpr int kLargest = 320;       // 1/16 of log₂
 
 // ---- the network
 
@@ -75,7 +75,7 @@ Activations doubled_and_added(const Activations& small, const Activations& like,
       for (int c = 0; c < like.channels; ++c) {
         const int at = x * like.channels + c;
         to[at] = static_cast<std::int16_t>(
-            std::min(a[x / 2 * like.channels + c] + b[at], kernels::kGreatestActivation));
+            std::min(a[x / 2 * like.channels + c] + b[at], kernels::kMaxActivation));
       }
     }
   }
@@ -106,7 +106,7 @@ enum Layer : std::size_t {
 
 /// Whether convolve_two() computes the layer.
 bool is_transformed(const HintLayer& l) {
-  return l.side == 3 && l.stride == 1 && l.inputs % 8 == 0 && l.inputs <= kernels::kMostOutputs;
+  return l.side == 3 && l.stride == 1 && l.inputs % 8 == 0 && l.inputs <= kernels::kMaxOutputs;
 }
 
 std::size_t count_of_transformed(std::span<const HintLayer> layers) {
@@ -234,8 +234,8 @@ Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& net
   for (int y = 0; y < cells.height; ++y) {
     for (int x = 0; x < cells.width; ++x) {
       const std::int16_t* const t = output.row(y / 2) + x / 2 * output.channels + y % 2 * 2 + x % 2;
-      hints(x, y) = {limited(t[0], -kMostLogOdds, kMostLogOdds), limited(t[4], -kMostLogOdds, kMostLogOdds),
-                     limited(t[8], -kFarthest, kFarthest), limited(t[12], -kFarthest, kFarthest),
+      hints(x, y) = {limited(t[0], -kMaxLogOdds, kMaxLogOdds), limited(t[4], -kMaxLogOdds, kMaxLogOdds),
+                     limited(t[8], -kMaxDistance, kMaxDistance), limited(t[12], -kMaxDistance, kMaxDistance),
                      limited(t[16], 0, kLargest)};
     }
   }

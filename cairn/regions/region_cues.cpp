@@ -13,8 +13,8 @@
 namespace cairn {
 namespace {
 
-constexpr int kFar = 3;         // px to either side of a contact
-constexpr int kLeastRows = 16;  // of a band
+constexpr int kFar = 3;       // px to either side of a contact
+constexpr int kMinRows = 16;  // of a band
 using kernels::kNoDisparity;
 
 /// Histogram bin of a colour difference, −255 … 255.
@@ -56,9 +56,9 @@ struct RunMoments {
   }
 };
 
-/// Heights of up to kMost pixels, so that no 32-bit sum overflows: twice as many per vector as with 64 bits.
+/// Heights of up to kMax pixels, so that no 32-bit sum overflows: twice as many per vector as with 64 bits.
 struct RunHeights {
-  static constexpr std::int32_t kMost = 512;
+  static constexpr std::int32_t kMax = 512;
   std::int32_t n = 0, sum = 0, squares = 0, behind = 0, on = 0;
   /// `height`: clamped, 0 if unknown. `is_known`: 0 or 1, branch-free, because valid disparities are
   /// unpredictable.
@@ -72,13 +72,13 @@ struct RunHeights {
   [[nodiscard]] Heights heights() const { return {n, sum, squares, behind, on}; }
 };
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
-static_assert(kLargest / RunHeights::kMost / clamped_height(kLargest) >= clamped_height(kLargest));
+static_assert(kLargest / RunHeights::kMax / clamped_height(kLargest) >= clamped_height(kLargest));
 
 /// Accumulates some rows, for gather_cues().
-class Gathering {
+class CueCollector {
  public:
   /// `steps`: the disparities of the whole image, shared by all bands.
-  Gathering(const Superpixels& superpixels, const Cues& cues, Image<std::int32_t>& steps, const Exec& exec)
+  CueCollector(const Superpixels& superpixels, const Cues& cues, Image<std::int32_t>& steps, const Exec& exec)
       : cues_(cues),
         run_(kernels::cue_kernels(exec)),
         labels_(superpixels.labels),
@@ -118,7 +118,7 @@ class Gathering {
   }
 
   /// Adds the sums of the following rows.
-  void add(const Gathering& next) {
+  void add(const CueCollector& next) {
     for (std::size_t i = 0; i < result_.regions.size(); ++i) {
       // Only contacts add to the perimeter.
       const RegionCues& region = next.result_.regions[i];
@@ -135,7 +135,7 @@ class Gathering {
     constexpr float kAny = -std::numeric_limits<float>::infinity();
     behind_.note(y);
     run_.in_steps(cues_.disparity_px.row(y), kAny, width_, steps_.row(y));
-    run_.in_steps(cues_.evidence_px.row(y), kAny, width_, textured_.data());
+    run_.in_steps(cues_.textured_px.row(y), kAny, width_, textured_.data());
     run_.in_steps(behind_.ground.data(), 0, width_, ground_.data());  // none above the horizon
     run_.in_steps(behind_.background.data(), kAny, width_, background_.data());
   }
@@ -230,10 +230,10 @@ class Gathering {
   /// Adds the heights of a run's disparities, and of the textured ones, above the surface behind.
   void add_heights(const std::vector<std::int32_t>& behind, const std::int32_t* d, int first, int last,
                    Heights& all, Heights& textured) const {
-    for (int begin = first; begin < last; begin += RunHeights::kMost) {
+    for (int begin = first; begin < last; begin += RunHeights::kMax) {
       RunHeights of_all;
       RunHeights of_textured;
-      for (int x = begin; x < std::min(begin + RunHeights::kMost, last); ++x) {
+      for (int x = begin; x < std::min(begin + RunHeights::kMax, last); ++x) {
         const std::int32_t base = behind[slot(x)];
         const int is_known = static_cast<int>(base != kNoDisparity) & static_cast<int>(d[x] != kNoDisparity);
         // The textured disparities are a subset of all disparities.
@@ -423,19 +423,19 @@ void ContactCues::add(const ContactCues& other, bool turned) {
 
 RegionGraphCues gather_cues(const Superpixels& superpixels, const Cues& cues, const Exec& exec) {
   const int height = superpixels.labels.height();
-  const int bands = std::clamp(height / kLeastRows, 1, exec.threads());
+  const int bands = std::clamp(height / kMinRows, 1, exec.threads());
   Image<std::int32_t> steps(superpixels.labels.size(), exec.pool);
-  std::vector<Gathering> gathered;
+  std::vector<CueCollector> gathered;
   gathered.reserve(slot(bands));
   for (int i = 0; i < bands; ++i) gathered.emplace_back(superpixels, cues, steps, exec);
-  const auto for_each_band = [&](void (Gathering::*work)(int, int)) {
+  const auto for_each_band = [&](void (CueCollector::*work)(int, int)) {
     parallel_for(exec, bands, 1, [&](int first, int last) {
       for (int i = first; i < last; ++i)
         (gathered[slot(i)].*work)(i * height / bands, (i + 1) * height / bands);
     });
   };
-  for_each_band(&Gathering::add_pixels);
-  for_each_band(&Gathering::add_contacts);
+  for_each_band(&CueCollector::add_pixels);
+  for_each_band(&CueCollector::add_contacts);
   for (std::size_t i = 1; i < gathered.size(); ++i) gathered.front().add(gathered[i]);
   return gathered.front().take();
 }

@@ -36,7 +36,7 @@ struct HintSums {
 struct Cues {
   LeftImage left;
   View<const float> disparity_px;  // NaN = hole
-  View<const float> evidence_px;   // the same, NaN where not textured: find_evidence()
+  View<const float> textured_px;   // the same, NaN where not textured: select_textured()
   const Ground& ground;
   const Background& background;
   View<const ObjectHint> hints = {};  // hint_objects(): of cells, not of pixels; may be empty

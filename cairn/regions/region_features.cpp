@@ -9,9 +9,9 @@
 namespace cairn {
 namespace {
 
-constexpr double kLevelling = 4e-4;         // damping of a plane's slopes: a spread in image widths²
-constexpr std::int64_t kLeastTextured = 6;  // textured disparities needed for a plane
-constexpr std::int64_t kLeastMatched = 12;
+constexpr double kLevelling = 4e-4;       // damping of a plane's slopes: a spread in image widths²
+constexpr std::int64_t kMinTextured = 6;  // textured disparities needed for a plane
+constexpr std::int64_t kMinMatched = 12;
 
 /// More than half of the region.
 bool mostly(std::int64_t part, const RegionCues& region) {
@@ -191,9 +191,9 @@ void list_merge_features(const RegionSide& a, const RegionSide& b, const Contact
   out("step 3 px away from it, px", mean_px(contact.far_abs, contact.far_n));
   out("share of the border with disparities there", share(contact.far_n, contact.length));
   out("share of level disparities there", share(contact.level, contact.far_n));
-  depth_features(kTexturedNames, {s.textured, fits_s.textured}, {l.textured, fits_l.textured}, kLeastTextured,
+  depth_features(kTexturedNames, {s.textured, fits_s.textured}, {l.textured, fits_l.textured}, kMinTextured,
                  contact, frame.width, out);
-  depth_features(kMatchedNames, {s.matched, fits_s.matched}, {l.matched, fits_l.matched}, kLeastMatched,
+  depth_features(kMatchedNames, {s.matched, fits_s.matched}, {l.matched, fits_l.matched}, kMinMatched,
                  contact, frame.width, out);
   out("evidence, share of the smaller one", share(s.textured.n, s.area));
   out("evidence, share of the larger one", share(l.textured.n, l.area));
@@ -354,11 +354,11 @@ struct Surroundings {
       step += weight * (region.fits.matched.d - n.side.fits.matched.d);
       step_length += weight;
     }
-    if (r.textured.n >= kLeastTextured && o.textured.n >= kLeastTextured) {
+    if (r.textured.n >= kMinTextured && o.textured.n >= kMinTextured) {
       textured_step += weight * (region.fits.textured.at(x, y) - n.side.fits.textured.at(x, y));
       textured_length += weight;
     }
-    if (r.matched.n >= kLeastMatched && o.matched.n >= kLeastMatched) {
+    if (r.matched.n >= kMinMatched && o.matched.n >= kMinMatched) {
       const double to = region.fits.matched.at(x, y) - n.side.fits.matched.at(x, y);
       matched_step += weight * to;
       matched_length += weight;
@@ -400,7 +400,7 @@ void list_surroundings(const Surroundings& s, std::size_t neighbours, double own
 template <class Out>
 void list_plane(const std::array<std::string_view, 4>& names, const PlaneMoments& moments,
                 const FittedPlane& plane, int width, Out& out) {
-  if (moments.n < kLeastMatched) {
+  if (moments.n < kMinMatched) {
     for (const std::string_view name : names) out(name, kUnknown);
     return;
   }
@@ -589,7 +589,7 @@ ObjectFeatures object_features(const RegionSide& region, std::span<const Neighbo
   return features;
 }
 
-void tell_end(ObjectFeatures& features, float share_of_it, float same_thing) {
+void report_end(ObjectFeatures& features, float share_of_it, float same_thing) {
   features[kObjectFeatures - 2] = share_of_it;
   features[kObjectFeatures - 1] = same_thing;
 }

@@ -85,22 +85,22 @@ struct Neighbour {
   RegionSide side;
   const ContactCues& contact;
   bool turned;       // a of the contact is the neighbour
-  float same_thing;  // same_thing_trees() of the two
+  float same_thing;  // merge_classifier() of the two
 };
 
 /// The merge history of a region; of a superpixel: {20, 20, 1}.
 struct Origin {
-  float same_thing = 0;        // same_thing_trees() of its two parts when merged
+  float same_thing = 0;        // merge_classifier() of its two parts when merged
   float least_same_thing = 0;  // the minimum over all merges in it
   float larger_part = 1;       // share of its area
 };
 
 /// The features for whether a region is a whole object. The last two are unknown until the region itself is
-/// merged: see tell_end().
+/// merged: see report_end().
 ObjectFeatures object_features(const RegionSide& region, std::span<const Neighbour> neighbours,
                                const Origin& origin, const FrameCues& frame);
-/// Sets these two: the share of the region in its parent, and same_thing_trees() of that merge.
-void tell_end(ObjectFeatures& features, float share, float same_thing);
+/// Sets these two: the share of the region in its parent, and merge_classifier() of that merge.
+void report_end(ObjectFeatures& features, float share, float same_thing);
 
 /// The names of the features, in order.
 std::vector<std::string_view> merge_feature_names();

@@ -61,7 +61,7 @@ class DisparitySums {
   std::vector<std::uint64_t> up_to_;
   std::vector<std::uint64_t> squares_up_to_;
 };
-constexpr int kMostSummed = 0xFFFF;  // pixels; up to here no sum overflows
+constexpr int kMaxSummed = 0xFFFF;  // pixels; up to here no sum overflows
 
 /// Adds a row's runs to the nodes. Until the end, a box holds its right and lower edge instead of width and
 /// height; the upper edge follows from the first pixel.
@@ -77,7 +77,7 @@ void count_row(const RegionId* label, int y, int width, const Sums& sums, const 
     node.box.x = std::min(node.box.x, begin);
     node.box.width = std::max(node.box.width, end);
     node.box.height = y + 1;
-    for (; end - begin > kMostSummed; begin += kMostSummed) sums.add(begin, begin + kMostSummed, node);
+    for (; end - begin > kMaxSummed; begin += kMaxSummed) sums.add(begin, begin + kMaxSummed, node);
     sums.add(begin, end, node);
     begin = end;
   }
@@ -87,10 +87,10 @@ void count_row(const RegionId* label, int y, int width, const Sums& sums, const 
 template <class Sums>
 std::vector<RegionGraph::Node> count_nodes(View<const RegionId> labels, int count, Sums sums,
                                            const kernels::LabelKernels& run) {
-  constexpr int kFarthest = std::numeric_limits<int>::max();
+  constexpr int kMaxDistance = std::numeric_limits<int>::max();
   const int width = labels.width();
   std::vector<RegionGraph::Node> nodes(
-      slot(count), RegionGraph::Node{.first_pixel = kFarthest, .box = {kFarthest, 0, 0, 0}});
+      slot(count), RegionGraph::Node{.first_pixel = kMaxDistance, .box = {kMaxDistance, 0, 0, 0}});
   std::vector<std::int32_t> ends(slot(width) + kernels::kListSlack);
   for (int y = 0; y < labels.height(); ++y) {
     const RegionId* const row = labels.row(y);

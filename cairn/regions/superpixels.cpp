@@ -7,7 +7,7 @@
 #include <cairn/image/gradient.hpp>
 #include <cairn/regions/contacts.hpp>
 #include <cairn/regions/cue_kernels.hpp>
-#include <cairn/regions/segmentation_of.hpp>
+#include <cairn/regions/superpixel_regions.hpp>
 #include <cairn/regions/superpixels.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cairn/stereo/label_kernels.hpp>
@@ -49,9 +49,9 @@ Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const floa
 }
 
 /// Merges basins pairwise.
-class Fusing {
+class BasinFuser {
  public:
-  Fusing(const Basins& basins, View<const std::uint16_t> edges, const Exec& exec)
+  BasinFuser(const Basins& basins, View<const std::uint16_t> edges, const Exec& exec)
       : memory_(exec.pool),
         links_(&memory_),
         left_(basins.count),
@@ -237,7 +237,7 @@ Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> dispar
                             const SuperpixelsConfig& config, const Exec& exec) {
   const Image<std::uint16_t> with_depth = with_steps(edges, disparity_px, noise_sigma, exec);
   Basins basins = watershed(with_depth, exec);
-  Fusing fusing(basins, with_depth, exec);
+  BasinFuser fusing(basins, with_depth, exec);
   fusing.until(config.count);
   std::int32_t count = 0;
   const std::vector<RegionId> numbers = fusing.numbers(count);
@@ -253,17 +253,17 @@ Superpixels cut_superpixels(const LeftImage& left, View<const float> disparity_p
   return cut_superpixels(superpixel_edges(left, exec), disparity_px, left.noise_sigma, config, exec);
 }
 
-Segmentation segmentation_of(const Superpixels& superpixels, View<const Gray> left, const Exec& exec) {
-  constexpr int kMostSummed = 1 << 15;  // pixels: fewer than those at which the kernel's sums overflow
+Segmentation superpixel_regions(const Superpixels& superpixels, View<const Gray> left, const Exec& exec) {
+  constexpr int kMaxSummed = 1 << 15;  // pixels: fewer than those at which the kernel's sums overflow
   std::vector<std::uint64_t> up_to(slot(left.width()) + 1);
-  return segmentation_of(
+  return superpixel_regions(
       superpixels.labels.clone(exec.pool), slot(superpixels.count), exec,
       [&](const Run& run, Region& region) {
         if (run.first == 0)
           kernels::label_kernels(exec).sum_grey(left.row(run.y), left.width(), up_to.data());
         region.valid_count += run.length();
-        for (int x = run.first; x < run.last; x += kMostSummed) {
-          const std::uint64_t sums = up_to[slot(std::min(x + kMostSummed, run.last))] - up_to[slot(x)];
+        for (int x = run.first; x < run.last; x += kMaxSummed) {
+          const std::uint64_t sums = up_to[slot(std::min(x + kMaxSummed, run.last))] - up_to[slot(x)];
           region.mean += static_cast<double>(sums >> 40U);
           region.variance += static_cast<double>(sums & ((std::uint64_t{1} << 40U) - 1));
         }

@@ -49,6 +49,6 @@ Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> dispar
                             const SuperpixelsConfig& config, const Exec& exec);
 
 /// The superpixels as a segmentation, with their grey level statistics.
-Segmentation segmentation_of(const Superpixels& superpixels, View<const Gray> left, const Exec& exec);
+Segmentation superpixel_regions(const Superpixels& superpixels, View<const Gray> left, const Exec& exec);
 
 }  // namespace cairn

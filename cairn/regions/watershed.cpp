@@ -172,9 +172,9 @@ void flow_next_to_slopes(Bits& bits, const Exec& exec) {
 /// Lets the plateau pixels at distance 2 and more flow, in breadth-first order. Plateaus without a lower
 /// border stay still. Heights need not be compared again: adjacent pixels that do not flow have the same
 /// height, as the higher one would flow, and the same holds for a still pixel next to one at distance 1.
-class Flooding {
+class Flood {
  public:
-  Flooding(Bits& bits, const Exec& exec)
+  Flood(Bits& bits, const Exec& exec)
       : bits_(bits),
         still_(bits.at(kStill, 0)),
         now_(slot(bits.words() * bits.size().height) + 1, exec.pool),
@@ -417,7 +417,7 @@ class DrainagePaths {
 Basins watershed(View<const std::uint16_t> gradient, const Exec& exec) {
   Bits bits = flow_downhill(gradient, exec);
   flow_next_to_slopes(bits, exec);
-  Flooding(bits, exec).run();
+  Flood(bits, exec).run();
   Basins basins{Image<RegionId>(gradient.size(), exec.pool), 0};
   basins.count = DrainagePaths(bits, basins.labels, exec).label();
   return basins;

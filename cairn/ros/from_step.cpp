@@ -189,7 +189,7 @@ DisparityImage disparity_image_of(const Header& header, const Frame& frame,
   return message;
 }
 
-Image labels_of(const Header& header, const Step& step) {
+Image labels_of(const Header& header, const TrackedFrame& step) {
   if (step.ids.empty()) {
     return mono16(header, View<const ObjectId>(step.frame.objects.labels),
                   [](ObjectId id) { return number(id); });
@@ -203,7 +203,8 @@ Image reject_of(const Header& header, const Frame& frame) {
                 [](Reject reject) { return static_cast<std::uint16_t>(reject); });
 }
 
-Detection3DArray detections_of(const Header& header, const Step& step, const std::optional<StereoRig>& rig) {
+Detection3DArray detections_of(const Header& header, const TrackedFrame& step,
+                               const std::optional<StereoRig>& rig) {
   Detection3DArray message;
   message.header = header;
   if (!rig) return message;
@@ -229,7 +230,7 @@ Detection3DArray detections_of(const Header& header, const Step& step, const std
   return message;
 }
 
-PointCloud2 cloud_of(const Header& header, const Frame& frame, Space space,
+PointCloud2 cloud_of(const Header& header, const Frame& frame, ObstacleLabel space,
                      const std::optional<StereoRig>& rig, View<const Gray> left, View<const Rgb> left_rgb,
                      int stride) {
   constexpr std::uint32_t kStep = 24;
@@ -270,7 +271,7 @@ PointCloud2 cloud_of(const Header& header, const Frame& frame, Space space,
 }
 
 std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,
-                                     const std::optional<StereoRig>& rig, const SpaceConfig& config) {
+                                     const std::optional<StereoRig>& rig, const ObstaclesConfig& config) {
   const auto floor = floor_frame(frame.ground, rig);
   if (!floor || frame.space.empty()) return std::nullopt;
   ObstacleGrid grid = map_obstacles(frame.space, frame.disparity.disparity_px, *floor, *rig, config);
@@ -300,7 +301,7 @@ std::optional<TransformStamped> floor_transform_of(Stamp stamp, const FrameNames
                           {vector_of(floor->to_camera({})), quaternion_of(camera_from_floor)}};
 }
 
-std::optional<TransformStamped> camera_transform_of(const FrameNames& names, const Step& step) {
+std::optional<TransformStamped> camera_transform_of(const FrameNames& names, const TrackedFrame& step) {
   if (step.is_lost) return std::nullopt;
   const Point3 at = step.map_from_camera.translation_m;
   return TransformStamped{header_of(step.stamp, names.map),
@@ -308,7 +309,8 @@ std::optional<TransformStamped> camera_transform_of(const FrameNames& names, con
                           {{at.x, at.y, at.z}, quaternion_of(step.map_from_camera)}};
 }
 
-TFMessage transforms_of(const FrameNames& names, const Step& step, const std::optional<StereoRig>& rig) {
+TFMessage transforms_of(const FrameNames& names, const TrackedFrame& step,
+                        const std::optional<StereoRig>& rig) {
   TFMessage message;
   if (auto transform = camera_transform_of(names, step)) message.transforms.push_back(std::move(*transform));
   if (auto transform = floor_transform_of(step.stamp, names, step.frame.ground, rig))

@@ -45,30 +45,32 @@ DisparityImage disparity_image_of(const Header& header, const Frame& frame,
                                   std::optional<float> hole_px = std::nullopt);
 
 /// mono16: the track of each pixel (modulo 65535, from 1), or its object if there was no tracking; 0 = none.
-Image labels_of(const Header& header, const Step& step);
+Image labels_of(const Header& header, const TrackedFrame& step);
 /// mono16: the bits of Reject, 0 = valid disparity.
 Image reject_of(const Header& header, const Frame& frame);
 
 /// The objects with a metric position, nearest first. id: the track's number, empty for an object without a
 /// track; the object's number if there was no tracking. score: its confidence. Empty without a rig.
-Detection3DArray detections_of(const Header& header, const Step& step, const std::optional<StereoRig>& rig);
+Detection3DArray detections_of(const Header& header, const TrackedFrame& step,
+                               const std::optional<StereoRig>& rig);
 
 /// The points of obstacles or floor with a disparity, from every `stride`-th pixel of every `stride`-th row:
 /// x y z (m), rgb, object (its number, 0 = none), confidence (of the disparity). Empty without a rig.
-PointCloud2 cloud_of(const Header& header, const Frame& frame, Space space,
+PointCloud2 cloud_of(const Header& header, const Frame& frame, ObstacleLabel space,
                      const std::optional<StereoRig>& rig, View<const Gray> left, View<const Rgb> left_rgb,
                      int stride = 1);
 
 /// The obstacle grid (map_obstacles()); nullopt if no floor is known. `header`: in the floor's frame.
 std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,
-                                     const std::optional<StereoRig>& rig, const SpaceConfig& config);
+                                     const std::optional<StereoRig>& rig, const ObstaclesConfig& config);
 
 /// The floor's pose in the camera's frame; nullopt if unknown.
 std::optional<TransformStamped> floor_transform_of(Stamp stamp, const FrameNames& names, const Ground& ground,
                                                    const std::optional<StereoRig>& rig);
 /// The camera's pose in the map; nullopt if unknown.
-std::optional<TransformStamped> camera_transform_of(const FrameNames& names, const Step& step);
+std::optional<TransformStamped> camera_transform_of(const FrameNames& names, const TrackedFrame& step);
 /// Both, if known.
-TFMessage transforms_of(const FrameNames& names, const Step& step, const std::optional<StereoRig>& rig);
+TFMessage transforms_of(const FrameNames& names, const TrackedFrame& step,
+                        const std::optional<StereoRig>& rig);
 
 }  // namespace cairn::ros

@@ -24,10 +24,10 @@ using mcap::Op;
 using mcap::Reader;
 
 // Limits above any real recording; larger claims are rejected before memory is allocated.
-constexpr std::uint64_t kMostChunkBytes = std::uint64_t{256} << 20;
-constexpr std::uint64_t kMostSummaryBytes = std::uint64_t{256} << 20;
-constexpr std::uint64_t kMostAttachmentBytes = std::uint64_t{16} << 20;
-constexpr std::size_t kMostDefinitionBytes = std::size_t{64} << 20;  // of all channels
+constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t kMaxSummaryBytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t kMaxAttachmentBytes = std::uint64_t{16} << 20;
+constexpr std::size_t kMaxDefinitionBytes = std::size_t{64} << 20;  // of all channels
 constexpr std::uint64_t kFooterBytes = 20;
 
 /// A file read in pieces within its bounds.
@@ -101,9 +101,9 @@ Bytes unpacked(const Bytes& content) {
   const auto crc = in.number<std::uint32_t>();
   const std::string compression = in.text();
   const auto stored = in.take(in.number<std::uint64_t>());
-  if (length > kMostChunkBytes) {
+  if (length > kMaxChunkBytes) {
     throw Error("a chunk claims " + std::to_string(length) + " bytes, expected at most " +
-                std::to_string(kMostChunkBytes));
+                std::to_string(kMaxChunkBytes));
   }
   Bytes records;
   if (compression.empty()) {
@@ -143,6 +143,9 @@ struct McapReader::State {
   void add(Op op, std::span<const std::uint8_t> content);
   void add_attachment(std::uint64_t at, std::uint64_t length);
   void add_metadata(std::uint64_t at, std::uint64_t length);
+  [[nodiscard]] std::optional<Bytes> summary() const;
+  bool add_chunk_index(Reader& content);
+  std::uint64_t add_statistics(Reader& content);
   bool read_summary();
   void scan();
   void forget();
@@ -238,15 +241,15 @@ void McapReader::State::add(Op op, std::span<const std::uint8_t> content) {
     const auto before = channels.find(channel.id);
     if (before != channels.end()) definition_bytes -= before->second.schema.size();
     definition_bytes += schema.text.size();
-    if (definition_bytes > kMostDefinitionBytes)
-      throw Error("definitions of more than " + std::to_string(kMostDefinitionBytes) + " bytes");
+    if (definition_bytes > kMaxDefinitionBytes)
+      throw Error("definitions of more than " + std::to_string(kMaxDefinitionBytes) + " bytes");
     channel.schema = schema.text;
     channels.insert_or_assign(channel.id, std::move(channel));
   }
 }
 
 void McapReader::State::add_attachment(std::uint64_t content_at, std::uint64_t length) {
-  if (length > kMostAttachmentBytes || !may_read(length)) return;  // not written by cairn
+  if (length > kMaxAttachmentBytes || !may_read(length)) return;  // not written by cairn
   const Bytes content = file.read(content_at, length);
   Reader in(content);
   (void)in.take(16);
@@ -261,59 +264,76 @@ void McapReader::State::add_attachment(std::uint64_t content_at, std::uint64_t l
 }
 
 void McapReader::State::add_metadata(std::uint64_t content_at, std::uint64_t length) {
-  if (length > kMostAttachmentBytes || !may_read(length)) return;
+  if (length > kMaxAttachmentBytes || !may_read(length)) return;
   const Bytes content = file.read(content_at, length);
   Reader in(content);
   std::string name = in.text();
   metadata.insert_or_assign(std::move(name), in.words());
 }
 
-/// False if there is no summary, or one without chunk indexes.
-bool McapReader::State::read_summary() {
+/// The summary section; nullopt without one that can be read.
+std::optional<Bytes> McapReader::State::summary() const {
   const std::uint64_t tail = kRecordHeader + kFooterBytes + kMagic.size();
-  if (file.size() < 2 * kMagic.size() + tail) return false;
+  if (file.size() < 2 * kMagic.size() + tail) return std::nullopt;
   const std::uint64_t footer_at = file.size() - tail;
   const Bytes end = file.read(footer_at, tail);
-  if (!std::equal(kMagic.begin(), kMagic.end(), end.end() - kMagic.size())) return false;
+  if (!std::equal(kMagic.begin(), kMagic.end(), end.end() - kMagic.size())) return std::nullopt;
   Reader footer(end);
-  if (footer.number<Op>() != Op::footer || footer.number<std::uint64_t>() != kFooterBytes) return false;
+  if (footer.number<Op>() != Op::footer || footer.number<std::uint64_t>() != kFooterBytes)
+    return std::nullopt;
   const auto start = footer.number<std::uint64_t>();
   (void)footer.number<std::uint64_t>();
   const auto crc = footer.number<std::uint32_t>();
-  if (start == 0 || start > footer_at || footer_at - start > kMostSummaryBytes) return false;
-  const Bytes summary = file.read(start, footer_at - start + kRecordHeader + kFooterBytes - 4);
-  if (crc != 0 && ::crc32_z(0, summary.data(), summary.size()) != crc) return false;
+  if (start == 0 || start > footer_at || footer_at - start > kMaxSummaryBytes) return std::nullopt;
+  Bytes summary = file.read(start, footer_at - start + kRecordHeader + kFooterBytes - 4);
+  if (crc != 0 && ::crc32_z(0, summary.data(), summary.size()) != crc) return std::nullopt;
+  return summary;
+}
 
-  bool has_statistics = false;
-  std::uint64_t messages = 0;
-  Reader in(summary);
+/// Adds a chunk index. False if its length is impossible.
+bool McapReader::State::add_chunk_index(Reader& content) {
+  (void)content.take(16);
+  Part part;
+  part.at = content.number<std::uint64_t>() + kRecordHeader;
+  part.length = content.number<std::uint64_t>();
+  if (part.length < kRecordHeader) return false;
+  part.length -= kRecordHeader;
+  Reader offsets = content.part();
+  while (!offsets.empty()) {
+    part.channels.insert(offsets.number<std::uint16_t>());
+    (void)offsets.number<std::uint64_t>();
+  }
+  parts.push_back(std::move(part));
+  return true;
+}
+
+/// Adds the counts of messages, by channel, and returns the number of all.
+std::uint64_t McapReader::State::add_statistics(Reader& content) {
+  const auto messages = content.number<std::uint64_t>();
+  (void)content.take(2 + 4 + 4 + 4 + 4 + 8 + 8);
+  Reader of_channels = content.part();
+  while (!of_channels.empty()) {
+    const auto id = of_channels.number<std::uint16_t>();
+    counts[id] = of_channels.number<std::uint64_t>();
+  }
+  return messages;
+}
+
+/// False if there is no summary, or one without chunk indexes.
+bool McapReader::State::read_summary() {
+  const std::optional<Bytes> bytes = summary();
+  if (!bytes) return false;
+  std::optional<std::uint64_t> messages;  // as counted
+  Reader in(*bytes);
   while (in.rest().size() > kRecordHeader + kFooterBytes - 4) {
     const auto op = in.number<Op>();
     Reader content(in.take(in.number<std::uint64_t>()));
     if (op == Op::schema || op == Op::channel) {
       add(op, content.rest());
     } else if (op == Op::chunk_index) {
-      (void)content.take(16);
-      Part part;
-      part.at = content.number<std::uint64_t>() + kRecordHeader;
-      part.length = content.number<std::uint64_t>();
-      if (part.length < kRecordHeader) return false;
-      part.length -= kRecordHeader;
-      Reader offsets = content.part();
-      while (!offsets.empty()) {
-        part.channels.insert(offsets.number<std::uint16_t>());
-        (void)offsets.number<std::uint64_t>();
-      }
-      parts.push_back(std::move(part));
+      if (!add_chunk_index(content)) return false;
     } else if (op == Op::statistics) {
-      messages = content.number<std::uint64_t>();
-      (void)content.take(2 + 4 + 4 + 4 + 4 + 8 + 8);
-      Reader of_channels = content.part();
-      while (!of_channels.empty()) {
-        const auto id = of_channels.number<std::uint16_t>();
-        counts[id] = of_channels.number<std::uint64_t>();
-      }
-      has_statistics = true;
+      messages = add_statistics(content);
     } else if (op == Op::attachment_index || op == Op::metadata_index) {
       const auto at_record = content.number<std::uint64_t>();
       const auto length = content.number<std::uint64_t>();
@@ -324,7 +344,7 @@ bool McapReader::State::read_summary() {
         add_metadata(at_record + kRecordHeader, length - kRecordHeader);
     }
   }
-  if (parts.empty() && !(has_statistics && messages == 0)) return false;  // messages outside of chunks
+  if (parts.empty() && messages != std::uint64_t{0}) return false;  // messages outside of chunks
   std::ranges::sort(parts, {}, &Part::at);
   for (const Part& part : parts) {
     if (!file.holds(part.at, part.length)) return false;
@@ -336,9 +356,9 @@ bool McapReader::State::read_summary() {
 }
 
 Bytes McapReader::State::chunk_of(const Part& part) const {
-  if (part.length > kMostChunkBytes) {
+  if (part.length > kMaxChunkBytes) {
     throw Error("a chunk of " + std::to_string(part.length) + " bytes, expected at most " +
-                std::to_string(kMostChunkBytes));
+                std::to_string(kMaxChunkBytes));
   }
   return file.read(part.at, part.length);
 }
@@ -392,7 +412,7 @@ void McapReader::State::scan() {
       } else if (head.op == Op::message && head.length >= 22) {
         const Bytes id = file.read(head.at, 2);
         parts.push_back({head.at, head.length, false, {Reader(id).number<std::uint16_t>()}});
-      } else if ((head.op == Op::schema || head.op == Op::channel) && head.length <= kMostAttachmentBytes) {
+      } else if ((head.op == Op::schema || head.op == Op::channel) && head.length <= kMaxAttachmentBytes) {
         add(head.op, file.read(head.at, head.length));
       } else if (head.op == Op::attachment) {
         add_attachment(head.at, head.length);
@@ -456,8 +476,8 @@ std::optional<McapMessage> McapReader::next() {
       message.channel = content.number<std::uint16_t>();
       (void)content.number<std::uint32_t>();
       message.logged.ns = content.number<std::int64_t>();
-      constexpr std::int64_t kFarthestNs = std::numeric_limits<std::int64_t>::max() / 2;  // differences fit
-      if (message.logged.ns < 0 || message.logged.ns > kFarthestNs)
+      constexpr std::int64_t kMaxNs = std::numeric_limits<std::int64_t>::max() / 2;  // differences fit
+      if (message.logged.ns < 0 || message.logged.ns > kMaxNs)
         throw Error("a message has a time after the year 2116");
       (void)content.number<std::uint64_t>();
       message.bytes = content.rest();

@@ -108,6 +108,8 @@ struct McapWriter::State {
     std::vector<IndexEntry> index;  // for the current chunk
   };
 
+  Writer add_message_indexes(Writer& records, std::uint64_t began) const;
+  [[nodiscard]] Writer statistics() const;
   void finish_chunk();
   void drop_chunk();
   void write(const Writer& records, bool sync) {
@@ -219,6 +221,46 @@ void McapWriter::message(std::uint16_t id, Stamp stamp, std::span<const std::uin
   flush();
 }
 
+/// Adds the index of each channel to the records of a chunk, and returns where each is. `began`: of the records.
+Writer McapWriter::State::add_message_indexes(Writer& records, std::uint64_t began) const {
+  Writer offsets;
+  for (const Channel& channel : channels) {
+    if (channel.index.empty()) continue;
+    offsets.number(channel.id);
+    offsets.number(began + records.size());
+    Writer index;
+    index.number(channel.id);
+    index.number(static_cast<std::uint32_t>(channel.index.size() * 16));
+    for (const IndexEntry& entry : channel.index) {
+      index.number(entry.time);
+      index.number(entry.offset);
+    }
+    records.record(Op::message_index, index);
+  }
+  return offsets;
+}
+
+/// The record of what the file holds.
+Writer McapWriter::State::statistics() const {
+  Writer content;
+  content.number(messages);
+  content.number(static_cast<std::uint16_t>(schemas.size()));
+  content.number(static_cast<std::uint32_t>(channels.size()));
+  content.number(attachments);
+  content.number(metadata);
+  content.number(chunks);
+  content.number(range.begin());
+  content.number(range.last);
+  content.number(static_cast<std::uint32_t>(channels.size() * 10));
+  for (const Channel& channel : channels) {
+    content.number(channel.id);
+    content.number(channel.count);
+  }
+  Writer record;
+  record.record(Op::statistics, content);
+  return record;
+}
+
 void McapWriter::State::finish_chunk() {
   if (chunk.size() == 0) return;
   Bytes packed;
@@ -244,20 +286,7 @@ void McapWriter::State::finish_chunk() {
   const std::uint64_t began = file.size();
   records.record(Op::chunk, content);
   const std::uint64_t length = records.size();
-  Writer offsets;
-  for (const Channel& channel : channels) {
-    if (channel.index.empty()) continue;
-    offsets.number(channel.id);
-    offsets.number(began + records.size());
-    Writer index;
-    index.number(channel.id);
-    index.number(static_cast<std::uint32_t>(channel.index.size() * 16));
-    for (const IndexEntry& entry : channel.index) {
-      index.number(entry.time);
-      index.number(entry.offset);
-    }
-    records.record(Op::message_index, index);
-  }
+  const Writer offsets = add_message_indexes(records, began);
   Writer summary;
   summary.number(chunk_range.begin());
   summary.number(chunk_range.last);
@@ -356,23 +385,7 @@ void McapWriter::close() {
 
   // The summary, grouped by kind of record.
   const std::uint64_t summary_start = s.file.size();
-  Writer statistics_content;
-  statistics_content.number(s.messages);
-  statistics_content.number(static_cast<std::uint16_t>(s.schemas.size()));
-  statistics_content.number(static_cast<std::uint32_t>(s.channels.size()));
-  statistics_content.number(s.attachments);
-  statistics_content.number(s.metadata);
-  statistics_content.number(s.chunks);
-  statistics_content.number(s.range.begin());
-  statistics_content.number(s.range.last);
-  statistics_content.number(static_cast<std::uint32_t>(s.channels.size() * 10));
-  for (const State::Channel& channel : s.channels) {
-    statistics_content.number(channel.id);
-    statistics_content.number(channel.count);
-  }
-  Writer statistics;
-  statistics.record(Op::statistics, statistics_content);
-
+  const Writer statistics = s.statistics();
   Writer summary;
   Writer offsets;
   for (const auto& [op, group] : {std::pair<Op, const Writer*>{Op::schema, &s.schema_records},

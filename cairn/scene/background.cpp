@@ -274,19 +274,19 @@ class WallSearch {
 
 /// The textured pixels, in raster order, without reflections on a glossy floor: these are behind every wall
 /// and would count against it.
-Points points_of(View<const float> evidence_px, const std::optional<GroundPlane>& floor, float tolerance,
+Points points_of(View<const float> textured_px, const std::optional<GroundPlane>& floor, float tolerance,
                  std::pmr::memory_resource* memory) {
   std::size_t most = 0;
-  for (int y = 0; y < evidence_px.height(); ++y) {
-    const float* const row = evidence_px.row(y);
+  for (int y = 0; y < textured_px.height(); ++y) {
+    const float* const row = textured_px.row(y);
     most += static_cast<std::size_t>(
-        std::count_if(row, row + evidence_px.width(), [](float d) { return !std::isnan(d); }));
+        std::count_if(row, row + textured_px.width(), [](float d) { return !std::isnan(d); }));
   }
   Points points(most + 1, memory);
   std::size_t count = 0;
-  for (int y = 0; y < evidence_px.height(); ++y) {
-    const float* const row = evidence_px.row(y);
-    for (int x = 0; x < evidence_px.width(); ++x) {
+  for (int y = 0; y < textured_px.height(); ++y) {
+    const float* const row = textured_px.row(y);
+    for (int x = 0; x < textured_px.width(); ++x) {
       const Point3 point{static_cast<float>(x), static_cast<float>(y), row[x]};
       points.x[count] = point.x;
       points.y[count] = point.y;
@@ -307,15 +307,15 @@ float Background::disparity_px(float x, float y) const {
   return d;
 }
 
-Background fit_background(View<const float> evidence_px, const Ground& ground,
+Background fit_background(View<const float> textured_px, const Ground& ground,
                           const std::optional<StereoRig>& rig, const BackgroundConfig& config,
                           const Exec& exec) {
-  const int width = evidence_px.width();
+  const int width = textured_px.width();
   PoolMemory memory(exec.pool);
   std::vector<GroundPlane> planes;
   if (ground.plane) planes.push_back(*ground.plane);
-  const float tolerance = wall_tolerance_px(config, evidence_px.size());
-  WallSearch search(points_of(evidence_px, ground.plane, tolerance, &memory), std::move(planes),
+  const float tolerance = wall_tolerance_px(config, textured_px.size());
+  WallSearch search(points_of(textured_px, ground.plane, tolerance, &memory), std::move(planes),
                     ground.plane ? rig : std::nullopt, width, config, exec, &memory);
   for (int i = 0; i < config.max_walls && (search.find_next() || search.find_next_square()); ++i) {
   }

@@ -39,9 +39,9 @@ struct Background {
 
 /// Fits walls: planes perpendicular to the floor, supported by many textured disparities in front of the
 /// background found so far, with hardly any behind them; the latter distinguishes a wall from the side of a
-/// box. Deterministic. Without a ground, planes of any orientation. `evidence_px` as returned by
-/// find_evidence(). (beyond the paper)
-Background fit_background(View<const float> evidence_px, const Ground& ground,
+/// box. Deterministic. Without a ground, planes of any orientation. `textured_px` as returned by
+/// select_textured(). (beyond the paper)
+Background fit_background(View<const float> textured_px, const Ground& ground,
                           const std::optional<StereoRig>& rig, const BackgroundConfig& config,
                           const Exec& exec);
 

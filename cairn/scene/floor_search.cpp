@@ -23,22 +23,22 @@ namespace {
 constexpr float kTolerance = 1.0F;  // px; correct matches are rarely farther from the floor
 constexpr float kSteepestPitch =
     77.0F;  // degrees below the horizon; planes that face the camera more directly are walls
-constexpr float kLeastPitch = -30.0F;  // degrees; a camera that looks up more sees no floor
-constexpr float kMostRoll = 20.0F;     // degrees
-constexpr float kParallel = 5.0F;      // degrees; fits to parallel surfaces differ by less
+constexpr float kMinPitch = -30.0F;  // degrees; a camera that looks up more sees no floor
+constexpr float kMaxRoll = 20.0F;    // degrees
+constexpr float kParallel = 5.0F;    // degrees; fits to parallel surfaces differ by less
 
 // The conditions for accepting a floor.
-constexpr double kLeastMatches = 0.005;  // share of the image
-constexpr std::int64_t kFewestMatches = 64;
-constexpr double kLeastScore = 0.05;    // share of the matches under the plane's horizon
-constexpr double kLeastRise = 0.5;      // share of its slope that the matches certainly show from row to row
-constexpr int kFewestPairs = 8;         // of matches, to judge the slope
-constexpr double kAlike = 4;            // number of neighbouring matches with the same error
-constexpr double kLeastLikeness = 7.5;  // standard deviations: similarity of mirror images to their originals
+constexpr double kMinMatches = 0.005;  // share of the image
+constexpr std::int64_t kMinMatchesSeen = 64;
+constexpr double kMinScore = 0.05;    // share of the matches under the plane's horizon
+constexpr double kMinRise = 0.5;      // share of its slope that the matches certainly show from row to row
+constexpr int kMinPairs = 8;          // of matches, to judge the slope
+constexpr double kAlike = 4;          // number of neighbouring matches with the same error
+constexpr double kMinLikeness = 7.5;  // standard deviations: similarity of mirror images to their originals
 constexpr double kConfirmedLikeness = 5;  // the same, after a fit to all matches that confirm the plane
 constexpr double kNoLikeness = 2;         // the same; less is chance
-constexpr double kLeastSurplus = 6;       // standard deviations: of matches on a mirror over those beside it
-constexpr int kFewestSeen = 3;            // originals seen for each one that is missing, of a mirror
+constexpr double kMinSurplus = 6;         // standard deviations: of matches on a mirror over those beside it
+constexpr int kMinSeen = 3;               // originals seen for each one that is missing, of a mirror
 constexpr float kNearest = 1.25F;  // times the nearest match: the nearest a floor may be at the lower border
 constexpr float kApart = 4;        // px; least distance from an original
 constexpr int kLowerSurface = 3;   // a plane below the best counts with a third of its score
@@ -152,7 +152,7 @@ struct Tally {
   [[nodiscard]] double rank() const {
     return score() <= 0 ? 0.0 : static_cast<double>(score()) * score() / all;
   }
-  [[nodiscard]] bool convincing() const { return score() > 0 && score() >= kLeastScore * all; }
+  [[nodiscard]] bool convincing() const { return score() > 0 && score() >= kMinScore * all; }
 };
 
 Tally tally(const GroundPlane& plane, const Points& points, float infinity, const Kernels& run) {
@@ -185,9 +185,9 @@ struct Camera {
   /// Whether the pitch and roll of a camera that sees this plane as a floor are plausible.
   [[nodiscard]] bool may_stand_on(const GroundPlane& plane) const {
     const Vec3 down = normal(plane);
-    if (!(down.y > 0) || std::abs(down.x) > down.y * std::tan(radians(kMostRoll))) return false;
+    if (!(down.y > 0) || std::abs(down.x) > down.y * std::tan(radians(kMaxRoll))) return false;
     const float pitch = down.z / std::hypot(down.x, down.y);
-    return pitch <= std::tan(radians(kSteepestPitch)) && pitch >= std::tan(radians(kLeastPitch));
+    return pitch <= std::tan(radians(kSteepestPitch)) && pitch >= std::tan(radians(kMinPitch));
   }
 };
 
@@ -218,13 +218,13 @@ class MatchIndex {
     if (!(column < static_cast<float>(columns_) && row < static_cast<float>(rows_)))
       return MatchAtPlace::none;
     const auto cell = static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column));
-    MatchAtPlace sight = first_[cell] == first_[cell + 1] ? MatchAtPlace::none : MatchAtPlace::farther;
+    MatchAtPlace detect = first_[cell] == first_[cell + 1] ? MatchAtPlace::none : MatchAtPlace::farther;
     for (std::size_t k = first_[cell]; k < first_[cell + 1]; ++k) {
       const float above = points_.d[members_[k]] - d;
       if (std::abs(above) <= kTolerance) return MatchAtPlace::same;
-      if (above > 0) sight = MatchAtPlace::none;  // it may be hidden
+      if (above > 0) detect = MatchAtPlace::none;  // it may be hidden
     }
-    return sight;
+    return detect;
   }
 
  private:
@@ -245,25 +245,25 @@ class MatchIndex {
 };
 
 /// The matches of a map that the search uses.
-struct Sampled {
+struct SampledMap {
   View<const float> disparity_px;
   int step;
   Points points;
   MatchIndex places;
   float nearest = 0;  // the largest disparity, px
 
-  Sampled(View<const float> map, std::int64_t valid)
+  SampledMap(View<const float> map, std::int64_t valid)
       : disparity_px(map),
         step(grid_step(valid)),
         points(sample(map, step)),
         places(points, map.size(), step) {
     if (points.size() > 0) nearest = *std::max_element(points.d.begin(), points.d.end());
   }
-  Sampled(const Sampled&) = delete;  // the index refers to the points
-  Sampled& operator=(const Sampled&) = delete;
-  Sampled(Sampled&&) = delete;
-  Sampled& operator=(Sampled&&) = delete;
-  ~Sampled() = default;
+  SampledMap(const SampledMap&) = delete;  // the index refers to the points
+  SampledMap& operator=(const SampledMap&) = delete;
+  SampledMap(SampledMap&&) = delete;
+  SampledMap& operator=(SampledMap&&) = delete;
+  ~SampledMap() = default;
 };
 
 /// Calls visit(number, x, y, d) for each match below the plane, with the position and the disparity at which
@@ -300,9 +300,9 @@ Reflections reflections(const GroundPlane& plane, const Points& points, const Ma
                         const Camera& camera, const Kernels& run) {
   Reflections found;
   for_each_original(plane, points, camera, run, [&](std::uint32_t, float x, float y, float d) {
-    const MatchAtPlace sight = places.look(x, y, d);
-    found.seen += sight == MatchAtPlace::same ? 1 : 0;
-    found.missing += sight == MatchAtPlace::farther ? 1 : 0;
+    const MatchAtPlace detect = places.look(x, y, d);
+    found.seen += detect == MatchAtPlace::same ? 1 : 0;
+    found.missing += detect == MatchAtPlace::farther ? 1 : 0;
   });
   return found;
 }
@@ -403,7 +403,7 @@ enum class Slope : std::uint8_t { rising, flat, unknown };
 /// Whether the matches on the plane rise towards the camera as the plane does: disparities some rows apart must
 /// differ by more than noise explains. This distinguishes a floor from a plane across upright surfaces at different
 /// depths, for example an object in front of a wall, each of which has one disparity from top to bottom.
-Slope slope_on(const GroundPlane& plane, const Sampled& seen, const Kernels& run) {
+Slope slope_on(const GroundPlane& plane, const SampledMap& seen, const Kernels& run) {
   const View<const float> disparity_px = seen.disparity_px;
   const Points& points = seen.points;
   double nn = 0;  // n rows apart, d px apart
@@ -425,11 +425,11 @@ Slope slope_on(const GroundPlane& plane, const Sampled& seen, const Kernels& run
       dd += apart * apart;
     }
   }
-  if (pairs < kFewestPairs) return Slope::unknown;
+  if (pairs < kMinPairs) return Slope::unknown;
   const double slope = nd / nn;
   const double variance = std::max(0.0, dd - slope * nd) / pairs;
   const double uncertainty = 2 * std::sqrt(kAlike * variance / nn);  // two standard deviations of the slope
-  const double least = kLeastRise * double{plane.b};
+  const double least = kMinRise * double{plane.b};
   if (slope - uncertainty >= least) return Slope::rising;
   return slope < least ? Slope::flat : Slope::unknown;
 }
@@ -488,7 +488,7 @@ class Contrast {
 };
 
 /// The tally with the mirror images among the matches.
-Tally tally_with_mirrored(const GroundPlane& plane, const Sampled& seen, const Camera& camera,
+Tally tally_with_mirrored(const GroundPlane& plane, const SampledMap& seen, const Camera& camera,
                           const Kernels& run) {
   Tally judged = tally(plane, seen.points, camera.infinity, run);
   judged.mirrored = reflections(plane, seen.points, seen.places, camera, run).seen;
@@ -496,14 +496,16 @@ Tally tally_with_mirrored(const GroundPlane& plane, const Sampled& seen, const C
 }
 
 /// Whether textured matches show the plane to be upright. Smooth matches can rise across what has no texture.
-bool is_upright(const GroundPlane& plane, const Sampled& textured, const Camera& camera, const Kernels& run) {
+bool is_upright(const GroundPlane& plane, const SampledMap& textured, const Camera& camera,
+                const Kernels& run) {
   return tally_with_mirrored(plane, textured, camera, run).convincing() &&
          slope_on(plane, textured, run) == Slope::flat;
 }
 
 /// `textured` may be null.
-Candidates candidates(const std::vector<PlaneHypothesis>& list, const Sampled& seen, const Sampled* textured,
-                      Contrast& contrast, const Camera& camera, const Kernels& run) {
+Candidates candidates(const std::vector<PlaneHypothesis>& list, const SampledMap& seen,
+                      const SampledMap* textured, Contrast& contrast, const Camera& camera,
+                      const Kernels& run) {
   Candidates found;
   for_each_finalist(list, seen.points, found.walls, run, [&](const GroundPlane& plane) {
     const Tally judged = tally_with_mirrored(plane, seen, camera, run);
@@ -535,7 +537,7 @@ bool is_within_reach(const GroundPlane& plane, float nearest, Size image, const 
 
 /// A floor that shows little but mirror images: of the planes with matches of their own, the one whose mirror
 /// images are most similar to their originals.
-std::optional<GroundPlane> mirror(std::vector<PlaneHypothesis> list, const Sampled& seen,
+std::optional<GroundPlane> mirror(std::vector<PlaneHypothesis> list, const SampledMap& seen,
                                   View<const float> contrast, const std::vector<GroundPlane>& walls,
                                   const Camera& camera, const Kernels& run) {
   const Points few = about(kMirrorScreening, seen.points);
@@ -547,7 +549,7 @@ std::optional<GroundPlane> mirror(std::vector<PlaneHypothesis> list, const Sampl
   std::stable_sort(list.begin(), list.end(),
                    [](const PlaneHypothesis& p, const PlaneHypothesis& q) { return p.score > q.score; });
   std::optional<GroundPlane> best;
-  double most = kLeastLikeness;
+  double most = kMinLikeness;
   for_each_finalist(list, seen.points, walls, run, [&](const GroundPlane& plane) {
     if (!is_within_reach(plane, seen.nearest, contrast.size(), camera)) return;
     const Tally judged = tally(plane, seen.points, camera.infinity, run);
@@ -608,14 +610,14 @@ std::vector<PlaneHypothesis> mirror_guesses(const Points& points, const Camera& 
 /// How much a plane is a mirror: its likeness, or 0 where it may be no floor.
 class MirrorJudge {
  public:
-  MirrorJudge(const Sampled& seen, View<const float> contrast, const Camera& camera, const Kernels& run)
+  MirrorJudge(const SampledMap& seen, View<const float> contrast, const Camera& camera, const Kernels& run)
       : seen_(seen), contrast_(contrast), camera_(camera), run_(run) {}
 
   [[nodiscard]] double operator()(const GroundPlane& plane, const Points& points) const {
     if (!camera_.may_stand_on(plane) || !is_within_reach(plane, seen_.nearest, contrast_.size(), camera_))
       return 0;
     const Reflections found = reflections(plane, points, seen_.places, camera_, run_);
-    if (found.seen == 0 || kFewestSeen * found.missing > found.seen) return 0;
+    if (found.seen == 0 || kMinSeen * found.missing > found.seen) return 0;
     return likeness(plane, points, seen_.places, camera_, contrast_, run_);
   }
   [[nodiscard]] double operator()(const GroundPlane& plane) const { return (*this)(plane, seen_.points); }
@@ -662,7 +664,7 @@ class MirrorJudge {
   static constexpr std::array<std::array<float, 3>, 6> kSteps{
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
-  const Sampled& seen_;
+  const SampledMap& seen_;
   View<const float> contrast_;
   const Camera& camera_;
   const Kernels& run_;
@@ -670,8 +672,8 @@ class MirrorJudge {
 
 /// A floor that is known by what it mirrors, of which textured matches tell, and by smooth matches of its own,
 /// which both must confirm: neither is enough by itself.
-std::optional<GroundPlane> confirmed_mirror(std::vector<PlaneHypothesis> list, const Sampled& seen,
-                                            const Sampled& textured, View<const float> contrast,
+std::optional<GroundPlane> confirmed_mirror(std::vector<PlaneHypothesis> list, const SampledMap& seen,
+                                            const SampledMap& textured, View<const float> contrast,
                                             const Camera& camera, const Kernels& run) {
   const MirrorJudge judge(textured, contrast, camera, run);
   const std::vector<PlaneHypothesis> between = mirror_guesses(textured.points, camera);
@@ -684,7 +686,7 @@ std::optional<GroundPlane> confirmed_mirror(std::vector<PlaneHypothesis> list, c
   for (PlaneHypothesis& guess : list) guess.score = static_cast<int>(1000 * judge(guess.plane));
   std::stable_sort(list.begin(), list.end(), better);
   std::optional<GroundPlane> best;
-  double most = kLeastLikeness;
+  double most = kMinLikeness;
   std::vector<GroundPlane> starts;
   for (const PlaneHypothesis& guess : list) {
     if (starts.size() == kMirrorClimbs) break;
@@ -699,7 +701,7 @@ std::optional<GroundPlane> confirmed_mirror(std::vector<PlaneHypothesis> list, c
     plane = refined(plane, seen.points, std::array{1.0F, 0.75F, 1.0F, 0.5F, 0.5F, 0.5F}, run);
     const Tally judged = tally(plane, seen.points, camera.infinity, run);
     const double chance = std::sqrt(judged.on + judged.near);
-    const bool is_confirmed = judged.on - judged.near >= kLeastSurplus * chance &&
+    const bool is_confirmed = judged.on - judged.near >= kMinSurplus * chance &&
                               slope_on(plane, seen, run) == Slope::rising &&
                               judge(plane) >= kConfirmedLikeness;
     if (!is_confirmed) continue;
@@ -791,20 +793,20 @@ Ground refused(Refusal why) {
 Ground find_floor(View<const float> disparity_px, const FloorCues& cues, const std::optional<StereoRig>& rig,
                   const Exec& exec) {
   const auto enough = [](View<const float> map, std::int64_t valid) {
-    const auto least = kLeastMatches * static_cast<double>(map.size().area());
-    return valid >= kFewestMatches && static_cast<double>(valid) >= least;
+    const auto least = kMinMatches * static_cast<double>(map.size().area());
+    return valid >= kMinMatchesSeen && static_cast<double>(valid) >= least;
   };
   const std::int64_t valid = count_valid(disparity_px, exec);
   if (!enough(disparity_px, valid)) return refused(Refusal::too_few_matches);
-  const Sampled seen(disparity_px, valid);
-  if (seen.points.size() < kFewestMatches) return refused(Refusal::too_few_matches);
-  std::optional<Sampled> textured;
+  const SampledMap seen(disparity_px, valid);
+  if (seen.points.size() < kMinMatchesSeen) return refused(Refusal::too_few_matches);
+  std::optional<SampledMap> textured;
   if (!cues.textured_px.empty()) {
     const std::int64_t of_them = count_valid(cues.textured_px, exec);
     if (enough(cues.textured_px, of_them)) textured.emplace(cues.textured_px, of_them);
-    if (textured && textured->points.size() < kFewestMatches) textured.reset();
+    if (textured && textured->points.size() < kMinMatchesSeen) textured.reset();
   }
-  const Sampled* const if_textured = textured ? &*textured : nullptr;
+  const SampledMap* const if_textured = textured ? &*textured : nullptr;
   Contrast contrast(cues.left, exec);
 
   const Camera camera(disparity_px.size(), rig);

@@ -38,14 +38,14 @@ kernels::FloorRow floor_row(const Ground& ground, const std::optional<StereoRig>
 
 // A surface below the floor's plane is visible beyond the floor's edge. It is smooth and wide, unlike a mirror
 // image, which is mixed with the floor's own pattern.
-constexpr float kWidestStep = 0.2F;     // px; larger steps between neighbours separate two surfaces
-constexpr double kLeastSurface = 0.02;  // share of the image
-constexpr int kFewestPixels = 64;
+constexpr float kWidestStep = 0.2F;   // px; larger steps between neighbours separate two surfaces
+constexpr double kMinSurface = 0.02;  // share of the image
+constexpr int kMinPixels = 64;
 
 /// Rejects all disparities except those of such surfaces.
 SpeckleConfig all_but_surfaces(Size image) {
-  const auto least = static_cast<int>(kLeastSurface * static_cast<double>(image.area()));
-  return {std::max(least, kFewestPixels) - 1, kWidestStep};
+  const auto least = static_cast<int>(kMinSurface * static_cast<double>(image.area()));
+  return {std::max(least, kMinPixels) - 1, kWidestStep};
 }
 
 void require_sound(const std::vector<PointPair>& points) {
@@ -147,20 +147,20 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
 }
 
 Image<float> floor_under_reflections(const DisparityMap& disparity, const Ground& ground, const Exec& exec) {
-  Image<float> seen_px = disparity.disparity_px.clone(exec.pool);
-  if (!ground.plane) return seen_px;
-  parallel_for(exec, seen_px.height(), 64, [&](int first, int last) {
+  Image<float> surface_disparity_px = disparity.disparity_px.clone(exec.pool);
+  if (!ground.plane) return surface_disparity_px;
+  parallel_for(exec, surface_disparity_px.height(), 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       const Reject* const reject = disparity.reject.row(y);
-      float* const seen = seen_px.row(y);
-      for (int x = 0; x < seen_px.width(); ++x) {
+      float* const seen = surface_disparity_px.row(y);
+      for (int x = 0; x < surface_disparity_px.width(); ++x) {
         if (!has(reject[x], Reject::below_ground)) continue;
         const float floor_px = ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y));
         seen[x] = std::clamp(floor_px, -kMaxDisparity, kMaxDisparity);
       }
     }
   });
-  return seen_px;
+  return surface_disparity_px;
 }
 
 Image<std::uint8_t> label_floor(const DisparityMap& disparity, const Ground& ground,

@@ -58,8 +58,8 @@ class PlaneFit {
     const double determinant = m.determinant();
     // The determinant is the product of the variances along and across the cloud; their sum bounds the
     // former.
-    constexpr double kLeastVariance = 0.25;
-    if (!(determinant >= kLeastVariance * (m.var_x + m.var_y)) || !(determinant > 0)) return std::nullopt;
+    constexpr double kMinVariance = 0.25;
+    if (!(determinant >= kMinVariance * (m.var_x + m.var_y)) || !(determinant > 0)) return std::nullopt;
     const double a = m.slope_x();
     const double b = m.slope_y();
     const double c = m.mean_d - a * (m.mean_x + origin_x_) - b * (m.mean_y + origin_y_);

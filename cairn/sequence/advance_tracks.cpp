@@ -11,8 +11,8 @@
 namespace cairn {
 namespace {
 
-constexpr float kOtherLabel = 6;    // of the accumulated log-likelihood ratio
-constexpr float kMostOfOne = 2.5F;  // per sighting: no two decide alone, since outlines jump
+constexpr float kOtherLabel = 6;   // of the accumulated log-likelihood ratio
+constexpr float kMaxOfOne = 2.5F;  // per sighting: no two decide alone, since outlines jump
 constexpr std::size_t kPlaces = 30;
 constexpr double kSpeedSigmas = 3;
 constexpr double kFirstSpeed = 1;  // m/s, standard deviation, of an object seen once
@@ -23,8 +23,8 @@ constexpr double kSteadyShare = 0.5;  // of a measurement's variance: errors tha
 
 /// The sighting of a track in the map frame: one object, or the pieces of one.
 struct Observation {
-  const Sighting* main = nullptr;
-  std::vector<const Sighting*> all;
+  const Detection* main = nullptr;
+  std::vector<const Detection*> all;
   Point3 position_m;
   Covariance3 covariance_m2{};
   Covariance3 steady_m2{};
@@ -44,18 +44,18 @@ Covariance3 scaled(Covariance3 c, double times) {
   return c;
 }
 
-Observation seen_by(std::vector<const Sighting*> sightings, const Pose& map_from_camera,
+Observation seen_by(std::vector<const Detection*> detections, const Pose& map_from_camera,
                     const Covariance6& pose_covariance) {
   Observation seen;
-  seen.main = sightings.front();
-  seen.all = std::move(sightings);
-  seen.has_place = std::ranges::all_of(seen.all, [](const Sighting* s) { return s->has_place; });
-  seen.is_cut = std::ranges::any_of(seen.all, [](const Sighting* s) { return s->is_cut; });
+  seen.main = detections.front();
+  seen.all = std::move(detections);
+  seen.has_place = std::ranges::all_of(seen.all, [](const Detection* s) { return s->has_place; });
+  seen.is_cut = std::ranges::any_of(seen.all, [](const Detection* s) { return s->is_cut; });
   if (!seen.has_place) return seen;
   int pixels = 0;
-  for (const Sighting* s : seen.all) pixels += s->pixel_count;
+  for (const Detection* s : seen.all) pixels += s->pixel_count;
   Point3 in_camera_m;
-  for (const Sighting* s : seen.all)
+  for (const Detection* s : seen.all)
     in_camera_m = in_camera_m + (double{1} * s->pixel_count / std::max(pixels, 1)) * s->position_in_camera_m;
   seen.position_m = map_from_camera(in_camera_m);
   seen.camera_m = map_from_camera.translation_m;
@@ -80,7 +80,7 @@ Filter6 moving_from(Point3 position_m, const Covariance3& covariance_m2) {
 /// Page's test (CUSUM): evidence for the current label is not accumulated, so an object that was static for
 /// long is found to move as quickly as a new one.
 void weigh_label(Track& track, float moving_against_static, const Place& place) {
-  const float ratio = std::clamp(moving_against_static, -kMostOfOne, kMostOfOne);
+  const float ratio = std::clamp(moving_against_static, -kMaxOfOne, kMaxOfOne);
   track.against_label = std::max(track.against_label + (track.is_moving ? -ratio : ratio), 0.0F);
   if (track.against_label == 0) track.places.clear();
   if (track.places.size() == kPlaces) track.places.erase(track.places.begin());
@@ -96,7 +96,7 @@ void update_place(Track& track, const Observation& seen, bool was_cut, Stamp now
     track.has_place = true;
     return;
   }
-  track.as_static = seen_anew(track.as_static, track.extent_m, track.seen_from_m, seen.camera_m);
+  track.as_static = moved_viewpoint(track.as_static, track.extent_m, track.seen_from_m, seen.camera_m);
   const Innovation stands = innovation(track.as_static.position_m, track.as_static.covariance_m2,
                                        seen.position_m, seen.covariance_m2);
   const Innovation moves = innovation(track.as_moving.position_m, of_position(track.as_moving),
@@ -233,12 +233,12 @@ void report(Track& track) {
   track.covariance_m2 = sum(known, track.measured_m2, 1);
 }
 
-Track founded(TrackId id, const Sighting& sighting, const Pose& map_from_camera,
-              const Covariance6& pose_covariance, Stamp now, const TrackingConfig& config) {
+Track new_track(TrackId id, const Detection& detection, const Pose& map_from_camera,
+                const Covariance6& pose_covariance, Stamp now, const TrackingConfig& config) {
   Track track;
   track.id = id;
   track.first = now;
-  update(track, seen_by({&sighting}, map_from_camera, pose_covariance), false, now, config);
+  update(track, seen_by({&detection}, map_from_camera, pose_covariance), false, now, config);
   if (is_beyond_doubt(track, config)) track.state = TrackState::confirmed;
   return track;
 }
@@ -252,8 +252,8 @@ Covariance3 covariance_in_map(const Track& track, const Pose& map_from_camera,
   return sum(track.covariance_m2, of_pose, 1);
 }
 
-Tracks tied_to_key(Tracks tracks, const Pose& map_from_camera, const Covariance6& key_covariance,
-                   bool is_new_segment) {
+Tracks rebased_to_keyframe(Tracks tracks, const Pose& map_from_camera, const Covariance6& key_covariance,
+                           bool is_new_segment) {
   const Pose camera_from_map = inverse(map_from_camera);
   const auto tie = [&](Point3 position_m) {
     return in_map({}, camera_from_map(position_m), map_from_camera, key_covariance);
@@ -273,10 +273,10 @@ Tracks tied_to_key(Tracks tracks, const Pose& map_from_camera, const Covariance6
   return tracks;
 }
 
-Tracks advance_tracks(Tracks tracks, const std::vector<Sighting>& sightings,
-                      const std::vector<Match>& matches, const Overlaps& overlaps,
-                      const Pose& map_from_camera, const Covariance6& pose_covariance, bool is_lost,
-                      Stamp now, const TrackingConfig& config) {
+Tracks advance_tracks(Tracks tracks, const std::vector<Detection>& detections,
+                      const std::vector<Assignment>& matches, const Overlaps& overlaps,
+                      const CameraAt& camera, const TrackingConfig& config) {
+  const auto& [now, map_from_camera, pose_covariance, is_lost] = camera;
   const double dt_s = seconds_between(tracks.stamp, now);
   tracks.stamp = now;
   tracks.odometry_suspect = false;
@@ -300,8 +300,8 @@ Tracks advance_tracks(Tracks tracks, const std::vector<Sighting>& sightings,
     return tracks;
   }
 
-  std::vector<const Sighting*> by_object(static_cast<std::size_t>(overlaps.objects) + 1, nullptr);
-  for (const Sighting& seen : sightings) by_object[slot(number(seen.object))] = &seen;
+  std::vector<const Detection*> by_object(static_cast<std::size_t>(overlaps.objects) + 1, nullptr);
+  for (const Detection& seen : detections) by_object[slot(number(seen.object))] = &seen;
   std::vector<bool> is_matched(by_object.size(), false);
   const std::vector<ObjectId> joined = joined_objects(tracks, overlaps);
   auto match = matches.begin();
@@ -309,7 +309,7 @@ Tracks advance_tracks(Tracks tracks, const std::vector<Sighting>& sightings,
     Track& track = tracks.list[t];
     track.as_static = predicted(track.as_static, dt_s, double{config.static_noise});
     track.as_moving = predicted(track.as_moving, dt_s, double{config.acceleration_noise});
-    std::vector<const Sighting*> mine;
+    std::vector<const Detection*> mine;
     for (; match != matches.end() && match->track == track.id; ++match) {
       mine.push_back(by_object[slot(number(match->object))]);
       is_matched[slot(number(match->object))] = true;
@@ -330,12 +330,12 @@ Tracks advance_tracks(Tracks tracks, const std::vector<Sighting>& sightings,
   }
   std::erase_if(tracks.list, [](const Track& track) { return track.state == TrackState::dead; });
   label(tracks, config);
-  for (const Sighting& seen : sightings) {
+  for (const Detection& seen : detections) {
     if (is_matched[slot(number(seen.object))] || seen.confidence < config.high_confidence ||
         std::ranges::binary_search(joined, seen.object))
       continue;
     tracks.list.push_back(
-        founded(TrackId{tracks.next++}, seen, map_from_camera, pose_covariance, now, config));
+        new_track(TrackId{tracks.next++}, seen, map_from_camera, pose_covariance, now, config));
   }
   for (Track& track : tracks.list) report(track);
   return tracks;

@@ -32,24 +32,24 @@ float share(int part, int whole) {
 
 /// The ratio of the sizes, larger to smaller, ≥ 1.
 double ratio(Vec3 a, Vec3 b) {
-  constexpr double kLeast = 0.02;  // m
-  const auto size = [kLeast](Vec3 v) { return std::max(std::hypot(double{v.x}, double{v.y}), kLeast); };
+  constexpr double kMin = 0.02;  // m
+  const auto size = [kMin](Vec3 v) { return std::max(std::hypot(double{v.x}, double{v.y}), kMin); };
   return std::max(size(a), size(b)) / std::min(size(a), size(b));
 }
 
 class Costs {
  public:
-  Costs(const Tracks& tracks, const std::vector<Sighting>& sightings, const Overlaps& overlaps,
+  Costs(const Tracks& tracks, const std::vector<Detection>& detections, const Overlaps& overlaps,
         const Pose& map_from_camera, const Covariance6& pose_covariance, Stamp now,
         const TrackingConfig& config)
       : tracks_(tracks),
-        sightings_(sightings),
+        sightings_(detections),
         overlaps_(overlaps),
         config_(config),
         dt_s_(seconds_between(tracks.stamp, now)),
         camera_m_(map_from_camera.translation_m),
         joined_(joined_objects(tracks, overlaps)) {
-    for (const Sighting& seen : sightings) {
+    for (const Detection& seen : detections) {
       positions_m_.push_back(map_from_camera(seen.position_in_camera_m));
       covariances_m2_.push_back(
           in_map(seen.covariance_in_camera_m2, seen.position_in_camera_m, map_from_camera, pose_covariance));
@@ -59,7 +59,7 @@ class Costs {
   /// In units of 1 / kPerUnit, or CostTable::kForbidden.
   [[nodiscard]] std::int64_t operator()(std::size_t t, std::size_t s) const {
     const Track& track = tracks_.list[t];
-    const Sighting& seen = sightings_[s];
+    const Detection& seen = sightings_[s];
     const int common = overlaps_.at(t, seen.object);
     const float overlap = share(common, overlaps_.predicted[t] + seen.pixel_count - common);
     double cost = kOverlapWeight * (1 - double{overlap}) + kLookWeight * double{config_.appearance_weight} *
@@ -85,8 +85,8 @@ class Costs {
   [[nodiscard]] bool is_joined(ObjectId object) const { return std::ranges::binary_search(joined_, object); }
   /// The innovation of the likelier of the two filters, as the object may start or stop moving.
   [[nodiscard]] Innovation nearest(const Track& track, std::size_t s) const {
-    const Filter3 stands = seen_anew(predicted(track.as_static, dt_s_, double{config_.static_noise}),
-                                     track.extent_m, track.seen_from_m, camera_m_);
+    const Filter3 stands = moved_viewpoint(predicted(track.as_static, dt_s_, double{config_.static_noise}),
+                                           track.extent_m, track.seen_from_m, camera_m_);
     const Innovation a =
         innovation(stands.position_m, stands.covariance_m2, positions_m_[s], covariances_m2_[s]);
     const Filter6 moves = predicted(track.as_moving, dt_s_, double{config_.acceleration_noise});
@@ -96,7 +96,7 @@ class Costs {
   }
 
   const Tracks& tracks_;
-  const std::vector<Sighting>& sightings_;
+  const std::vector<Detection>& sightings_;
   const Overlaps& overlaps_;
   const TrackingConfig& config_;
   double dt_s_;
@@ -107,20 +107,20 @@ class Costs {
 };
 
 /// Matches tracks and sightings that are unmatched so far.
-void match(const Costs& cost, const std::vector<std::size_t>& sightings, std::int64_t alone,
+void match(const Costs& cost, const std::vector<std::size_t>& detections, std::int64_t alone,
            std::vector<int>& sighting_of, std::vector<bool>& is_taken) {
   std::vector<std::size_t> rows;
   for (std::size_t t = 0; t < sighting_of.size(); ++t) {
     if (sighting_of[t] < 0) rows.push_back(t);
   }
-  CostTable table{static_cast<int>(rows.size()), static_cast<int>(sightings.size()), {}, alone};
+  CostTable table{static_cast<int>(rows.size()), static_cast<int>(detections.size()), {}, alone};
   for (const std::size_t t : rows) {
-    for (const std::size_t s : sightings) table.costs.push_back(cost(t, s));
+    for (const std::size_t s : detections) table.costs.push_back(cost(t, s));
   }
   const std::vector<int> found = assign(table);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (found[i] < 0) continue;
-    const std::size_t s = sightings[static_cast<std::size_t>(found[i])];
+    const std::size_t s = detections[static_cast<std::size_t>(found[i])];
     sighting_of[rows[i]] = static_cast<int>(s);
     is_taken[s] = true;
   }
@@ -151,35 +151,36 @@ std::vector<ObjectId> joined_objects(const Tracks& tracks, const Overlaps& overl
   return joined;
 }
 
-std::vector<Match> associate(const Tracks& tracks, const std::vector<Sighting>& sightings,
-                             const Overlaps& overlaps, const Pose& map_from_camera,
-                             const Covariance6& pose_covariance, Stamp now, const TrackingConfig& config) {
-  const Costs cost(tracks, sightings, overlaps, map_from_camera, pose_covariance, now, config);
+std::vector<Assignment> associate(const Tracks& tracks, const std::vector<Detection>& detections,
+                                  const Overlaps& overlaps, const CameraAt& camera,
+                                  const TrackingConfig& config) {
+  const Costs cost(tracks, detections, overlaps, camera.map_from_camera, camera.pose_covariance, camera.now,
+                   config);
   std::vector<int> sighting_of(tracks.list.size(), -1);
-  std::vector<bool> is_taken(sightings.size(), false);
+  std::vector<bool> is_taken(detections.size(), false);
   std::vector<std::size_t> sure;
   std::vector<std::size_t> unsure;
-  for (std::size_t s = 0; s < sightings.size(); ++s)
-    (sightings[s].confidence >= config.high_confidence ? sure : unsure).push_back(s);
+  for (std::size_t s = 0; s < detections.size(); ++s)
+    (detections[s].confidence >= config.high_confidence ? sure : unsure).push_back(s);
   // Pairs above twice the gate are not matched, even without an alternative.
   const std::int64_t alone = 2 * std::llround(double{config.gate} * kPerUnit);
   match(cost, sure, alone, sighting_of, is_taken);
   match(cost, unsure, alone, sighting_of, is_taken);
 
-  std::vector<Match> matches;
+  std::vector<Assignment> matches;
   for (std::size_t t = 0; t < tracks.list.size(); ++t) {
     const Track& track = tracks.list[t];
     if (sighting_of[t] < 0) continue;
-    const Sighting& main = sightings[static_cast<std::size_t>(sighting_of[t])];
+    const Detection& main = detections[static_cast<std::size_t>(sighting_of[t])];
     matches.push_back({track.id, main.object});
-    const auto is_part = [&](const Sighting& seen) {
+    const auto is_part = [&](const Detection& seen) {
       return share(overlaps.at(t, seen.object), seen.pixel_count) >= kPartShare;
     };
     if (!is_confirmed(track) || track.in_parts >= kPartsInARow || !is_part(main)) continue;
-    for (std::size_t s = 0; s < sightings.size(); ++s) {
-      if (is_taken[s] || !is_part(sightings[s]) || !touch(sightings[s].box_px, main.box_px)) continue;
+    for (std::size_t s = 0; s < detections.size(); ++s) {
+      if (is_taken[s] || !is_part(detections[s]) || !touch(detections[s].box_px, main.box_px)) continue;
       is_taken[s] = true;
-      matches.push_back({track.id, sightings[s].object});
+      matches.push_back({track.id, detections[s].object});
     }
   }
   return matches;

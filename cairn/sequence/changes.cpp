@@ -28,7 +28,7 @@ bool may_be_same(const Landmark& a, const Landmark& b) {
 }
 
 std::vector<int> frames_of(const LandmarksState& state, LandmarkId id) {
-  for (const LandmarksState::Vanished& vanished : state.vanished) {
+  for (const LandmarksState::VanishedLandmark& vanished : state.vanished) {
     if (vanished.landmark == id) return vanished.frames;
   }
   return {};
@@ -46,73 +46,97 @@ bool are_apart(const Eigen::Vector3d& way, const Matrix3& covariance, const Land
 }
 
 void forget_vanished(LandmarksState& state, LandmarkId id) {
-  std::erase_if(state.vanished, [&](const LandmarksState::Vanished& v) { return v.landmark == id; });
+  std::erase_if(state.vanished, [&](const LandmarksState::VanishedLandmark& v) { return v.landmark == id; });
 }
+
+namespace {
+
+/// A found landmark that is one which is gone, elsewhere.
+struct Move {
+  LandmarkId old = LandmarkId::none;
+  LandmarkId found = LandmarkId::none;
+  double score = 0;
+  Eigen::Vector3d way;
+};
+
+bool can_be(const Landmark& old, const Landmark& found, const LandmarksState& state) {
+  return old.id != found.id && was_seen_before(old, found.first, state) && may_be_same(found, old);
+}
+
+/// Of the landmark found at `id`, if it is one that is gone: the best by far, and no other found one fits it.
+std::optional<Move> move_of(LandmarkId id, const LandmarksState& state, const LandmarksConfig& config) {
+  const Landmark* found = find(state.map, id);
+  if (found == nullptr || found->is_gone) return std::nullopt;
+  const Landmark* best = nullptr;
+  double score = 0;
+  double second = 0;
+  for (const Landmark& old : state.map.list) {
+    if (!can_be(old, *found, state)) continue;
+    const double s = score_between(*found, old);
+    if (s > score) {
+      second = score;
+      score = s;
+      best = &old;
+    } else {
+      second = std::max(second, s);
+    }
+  }
+  if (best == nullptr || !best->is_gone || score < static_cast<double>(config.min_score) ||
+      score < second + kUnique)
+    return std::nullopt;
+  const bool is_only = std::none_of(state.found.begin(), state.found.end(), [&](LandmarkId rival) {
+    const Landmark* other = find(state.map, rival);
+    return other != nullptr && other != found && !other->is_gone && can_be(*best, *other, state) &&
+           score_between(*other, *best) > score - kUnique;
+  });
+  const Eigen::Vector3d way = vector(found->position_m - best->position_m);
+  const Matrix3 covariance = matrix(found->covariance_m2) + matrix(best->covariance_m2);
+  if (!is_only || !are_apart(way, covariance, config)) return std::nullopt;
+  return Move{best->id, id, score, way};
+}
+
+/// The old landmark takes the place of the found one, which is removed.
+void apply(const Move& move, LandmarksState& state) {
+  const Landmark place = *find(state.map, move.found);
+  Landmark& same = *find_in(state.map, move.old);
+  same.position_m = place.position_m;
+  same.covariance_m2 = place.covariance_m2;
+  same.log_odds = place.log_odds;
+  same.is_gone = false;
+  same.seen += place.seen;
+  same.expected += place.expected;
+  same.seen_through = 0;
+  same.last = place.last;
+  same.run = state.run;
+  for (TrackEvidence& evidence : state.tracks) {
+    if (evidence.landmark != place.id) continue;
+    evidence.landmark = same.id;
+    evidence.is_recognised = true;
+    evidence.score = move.score;
+  }
+  std::erase_if(state.map.list, [&](const Landmark& l) { return l.id == place.id; });
+  std::erase(state.found, place.id);
+  std::erase(state.unreported, place.id);
+  forget_vanished(state, move.old);
+}
+
+}  // namespace
 
 std::vector<LandmarkEvent> find_moved(LandmarksState& state, const LandmarkFrame& frame,
                                       const LandmarksConfig& config) {
   std::vector<LandmarkEvent> events;
-  const auto least = static_cast<double>(config.min_score);
-  const auto can_be = [&](const Landmark& old, const Landmark& found) {
-    return old.id != found.id && was_seen_before(old, found.first, state) && may_be_same(found, old);
-  };
-  bool again = true;
-  while (again) {
-    again = false;
+  const auto next_move = [&]() -> std::optional<Move> {
     for (const LandmarkId id : state.found) {
-      const Landmark* found = find(state.map, id);
-      if (found == nullptr || found->is_gone) continue;
-      const Landmark* best = nullptr;
-      double score = 0;
-      double second = 0;
-      for (const Landmark& old : state.map.list) {
-        if (!can_be(old, *found)) continue;
-        const double s = score_between(*found, old);
-        if (s > score) {
-          second = score;
-          score = s;
-          best = &old;
-        } else {
-          second = std::max(second, s);
-        }
-      }
-      if (best == nullptr || !best->is_gone || score < least || score < second + kUnique) continue;
-      const bool is_only = std::none_of(state.found.begin(), state.found.end(), [&](LandmarkId rival) {
-        const Landmark* other = find(state.map, rival);
-        return other != nullptr && other != found && !other->is_gone && can_be(*best, *other) &&
-               score_between(*other, *best) > score - kUnique;
-      });
-      const Eigen::Vector3d way = vector(found->position_m - best->position_m);
-      const Matrix3 covariance = matrix(found->covariance_m2) + matrix(best->covariance_m2);
-      if (!is_only || !are_apart(way, covariance, config)) continue;
-
-      const Landmark place = *found;
-      const double gone = probability_of(-best->log_odds);
-      events.push_back({LandmarkEventKind::moved, frame.stamp, best->id, place.position_m, point(way),
-                        gone * score, frames_of(state, best->id)});
-      Landmark& same = *find_in(state.map, best->id);
-      same.position_m = place.position_m;
-      same.covariance_m2 = place.covariance_m2;
-      same.log_odds = place.log_odds;
-      same.is_gone = false;
-      same.seen += place.seen;
-      same.expected += place.expected;
-      same.seen_through = 0;
-      same.last = place.last;
-      same.run = state.run;
-      for (TrackEvidence& evidence : state.tracks) {
-        if (evidence.landmark != place.id) continue;
-        evidence.landmark = same.id;
-        evidence.is_recognised = true;
-        evidence.score = score;
-      }
-      std::erase_if(state.map.list, [&](const Landmark& l) { return l.id == place.id; });
-      std::erase(state.found, place.id);
-      std::erase(state.unreported, place.id);
-      forget_vanished(state, same.id);
-      again = true;
-      break;
+      if (const auto move = move_of(id, state, config)) return move;
     }
+    return std::nullopt;
+  };
+  while (const std::optional<Move> move = next_move()) {
+    const Landmark& old = *find(state.map, move->old);
+    events.push_back({LandmarkEventKind::moved, frame.stamp, old.id, find(state.map, move->found)->position_m,
+                      point(move->way), probability_of(-old.log_odds) * move->score,
+                      frames_of(state, old.id)});
+    apply(*move, state);
   }
   return events;
 }

@@ -23,7 +23,7 @@ bool is_valid(Config config, const std::string& option, const std::string& value
 }
 
 /// Gains, relative to the mean of the setting in force, that let an arm stay in the search and win it.
-double least_lead(const Arm& arm, double lead_percent) {
+double least_lead(const OptionCandidate& arm, double lead_percent) {
   return arm.restores ? 0 : lead_percent / 100;
 }
 
@@ -34,9 +34,9 @@ std::string value_of(const Config& config, const std::string& option) {
   return std::ranges::find(all, option, &OptionInfo::name)->value;
 }
 
-std::vector<Arm> differences(const Config& config, const Config& known) {
+std::vector<OptionCandidate> differences(const Config& config, const Config& known) {
   const std::vector<OptionInfo> there = active_options(known);
-  std::vector<Arm> differ;
+  std::vector<OptionCandidate> differ;
   for (const OptionInfo& here : active_options(config)) {
     const auto other = std::ranges::find(there, here.name, &OptionInfo::name);
     if (other != there.end() && other->value != here.value) differ.push_back({here.name, other->value});
@@ -44,16 +44,16 @@ std::vector<Arm> differences(const Config& config, const Config& known) {
   return differ;
 }
 
-std::vector<Arm> restoring_arms(const Config& config, const Config& known, Size image) {
-  std::vector<Arm> arms = differences(config, known);
-  std::erase_if(arms, [&](const Arm& arm) {
+std::vector<OptionCandidate> restoring_arms(const Config& config, const Config& known, Size image) {
+  std::vector<OptionCandidate> arms = differences(config, known);
+  std::erase_if(arms, [&](const OptionCandidate& arm) {
     return arm.option == "match.min_disparity" || arm.option.starts_with("space.") ||
            (arm.option == "match.num_disparities" &&
             known.match.num_disparities < config.match.num_disparities) ||
            (arm.option == "ground.source" && config.ground.source != GroundSource::off) ||
            !is_valid(config, arm.option, arm.value, image);
   });
-  for (Arm& arm : arms) arm.restores = arm.option != "match.num_disparities";
+  for (OptionCandidate& arm : arms) arm.restores = arm.option != "match.num_disparities";
   return arms;
 }
 
@@ -64,9 +64,9 @@ Config nearest_preset(const Config& config) {
                                    [&](const Config& preset) { return differences(config, preset).size(); });
 }
 
-std::vector<Arm> arms_of(const Config& config, Size image, float step) {
+std::vector<OptionCandidate> arms_of(const Config& config, Size image, float step) {
   const std::vector<OptionInfo> known = active_options(config);
-  std::vector<Arm> arms;
+  std::vector<OptionCandidate> arms;
   const auto add = [&](const std::string& option, const std::string& value) {
     const auto now = std::ranges::find(known, option, &OptionInfo::name);
     if (now == known.end() || now->value == value) return;
@@ -95,9 +95,9 @@ std::vector<Arm> arms_of(const Config& config, Size image, float step) {
   return arms;
 }
 
-Lead lead_of(const ArmScore& score) {
+Lead lead_of(const CandidateScore& score) {
   constexpr double kOneSided95 = 1.645;
-  constexpr double kLeast = 1e-3;  // bounds the divisor for a configuration that finds nothing
+  constexpr double kMin = 1e-3;  // bounds the divisor for a configuration that finds nothing
   const std::size_t count = std::min(score.of_arm.size(), score.of_present.size());
   if (count < 2) return {};
   const auto n = static_cast<double>(count);
@@ -112,22 +112,23 @@ Lead lead_of(const ArmScore& score) {
   }
   const double mean = sum / n;
   const double variance = std::max(0.0, squares / n - mean * mean) / (n - 1);
-  const double base = std::max(kLeast, present / n);
+  const double base = std::max(kMin, present / n);
   return {mean / base, (mean - kOneSided95 * std::sqrt(variance)) / base};
 }
 
-std::vector<ArmScore> halved(std::vector<ArmScore> round, float lead_percent) {
+std::vector<CandidateScore> halved(std::vector<CandidateScore> round, float lead_percent) {
   const std::size_t most = (round.size() + 1) / 2;
-  std::ranges::stable_sort(round, std::ranges::greater{}, [](const ArmScore& s) { return lead_of(s).mean; });
+  std::ranges::stable_sort(round, std::ranges::greater{},
+                           [](const CandidateScore& s) { return lead_of(s).mean; });
   if (round.size() > 1) round.resize(most);
-  std::erase_if(round, [&](const ArmScore& s) {
+  std::erase_if(round, [&](const CandidateScore& s) {
     const double lead = lead_of(s).mean;
     return lead <= 0 || lead < least_lead(s.arm, lead_percent) / 2;
   });
   return round;
 }
 
-bool is_better(const ArmScore& score, const ControlConfig& config) {
+bool is_better(const CandidateScore& score, const ControlConfig& config) {
   const Lead lead = lead_of(score);
   return static_cast<int>(score.of_arm.size()) >= config.window &&
          lead.mean >= least_lead(score.arm, config.lead) && lead.low > 0;

@@ -34,11 +34,11 @@ void fields(ControlConfig& c, V&& v) {
 }
 
 /// Another value of one option.
-struct Arm {
+struct OptionCandidate {
   std::string option;
   std::string value;
   bool restores = false;  // the preset's value, fitted on many scenes
-  friend bool operator==(const Arm&, const Arm&) = default;
+  friend bool operator==(const OptionCandidate&, const OptionCandidate&) = default;
 };
 
 /// The value of an arm's option in `config`.
@@ -46,30 +46,30 @@ std::string value_of(const Config& config, const std::string& option);
 
 /// The alternatives to `config`: `step` times and 1/`step` times the value of relevant options, or the other
 /// choice. Excludes values without effect or out of range. Always in the same order.
-std::vector<Arm> arms_of(const Config& config, Size image, float step = 2);
+std::vector<OptionCandidate> arms_of(const Config& config, Size image, float step = 2);
 
 /// The values in `known` of the options that both read and that differ, as arms that do not restore.
-std::vector<Arm> differences(const Config& config, const Config& known);
+std::vector<OptionCandidate> differences(const Config& config, const Config& known);
 
 /// Of these, the ones that may be set without asking the user, as restoring arms. Omits knowledge of robot and
 /// scene: `space`, the origin of the floor, except off, and a disparity range that starts elsewhere or is
 /// larger. A smaller range may be known as well, so the larger one does not count as restoring.
-std::vector<Arm> restoring_arms(const Config& config, const Config& known, Size image);
+std::vector<OptionCandidate> restoring_arms(const Config& config, const Config& known, Size image);
 
 /// The preset with the fewest options that differ from those of `config`.
 Config nearest_preset(const Config& config);
 
 /// An option value that makes objects steadier.
 struct ControlEvent {
-  Arm arm;
+  OptionCandidate arm;
   bool is_set = false;  // from the next frame on, with ControlMethod::tune
   std::string before;   // the value of the option
   double lead = 0;      // share
 };
 
 /// The steadiness of an arm and of the present setting on the same frames. See steadiness().
-struct ArmScore {
-  Arm arm;
+struct CandidateScore {
+  OptionCandidate arm;
   std::vector<float> of_arm;
   std::vector<float> of_present;
 };
@@ -80,15 +80,15 @@ struct Lead {
   double mean = -1;
   double low = -1;
 };
-Lead lead_of(const ArmScore& score);
+Lead lead_of(const CandidateScore& score);
 
 /// The survivors of a round of successive halving (Jamieson and Talwalkar 2016): at most half of the arms,
 /// those with the highest lead, and none without a lead or, unless it restores, with less than half of
 /// `lead`. Ties: the earlier one.
-std::vector<ArmScore> halved(std::vector<ArmScore> round, float lead_percent);
+std::vector<CandidateScore> halved(std::vector<CandidateScore> round, float lead_percent);
 
 /// Whether to report or set the arm: compared on at least `window` frames, with a lead significantly above 0
 /// and, unless it restores, of at least `lead`.
-bool is_better(const ArmScore& score, const ControlConfig& config);
+bool is_better(const CandidateScore& score, const ControlConfig& config);
 
 }  // namespace cairn

@@ -10,9 +10,9 @@ namespace cairn {
 namespace {
 
 constexpr int kFirstSamples = 2;  // frames of the first round of many arms
-constexpr int kMostWindows = 4;   // after as many windows without a certain lead an arm is dropped
-constexpr float kLeastStep = 2;
-constexpr float kMostStep = 8;
+constexpr int kMaxWindows = 4;    // after as many windows without a certain lead an arm is dropped
+constexpr float kMinStep = 2;
+constexpr float kMaxStep = 8;
 constexpr double kObvious = 0.5;  // a lead large enough to skip further rounds
 
 }  // namespace
@@ -24,23 +24,25 @@ Controller::Controller(const FollowConfig& start)
       since_report_(start.control.hold) {}
 
 void Controller::begin_search(const Config& config, Size image) {
-  std::vector<Arm> arms = restoring_arms(config, preset_, image);
+  std::vector<OptionCandidate> arms = restoring_arms(config, preset_, image);
   is_restoring_ = !is_restoring_ && !arms.empty();
   if (!is_restoring_) {
     arms = arms_of(config, image, step_);
     // A change that was an improvement is undone only for a clear one.
-    for (const Arm& back : differences(config, start_)) {
+    for (const OptionCandidate& back : differences(config, start_)) {
       if (std::ranges::find(arms, back) == arms.end()) arms.push_back(back);
     }
   }
   round_.clear();
-  for (const Arm& arm : arms) {
-    const auto is_it = [&](const Arm& r) { return r.option == arm.option && r.value == arm.value; };
+  for (const OptionCandidate& arm : arms) {
+    const auto is_it = [&](const OptionCandidate& r) {
+      return r.option == arm.option && r.value == arm.value;
+    };
     if (std::ranges::none_of(reported_, is_it)) round_.push_back({arm, {}, {}});
   }
   // Try first what helped last.
   std::stable_partition(round_.begin(), round_.end(),
-                        [&](const ArmScore& s) { return s.arm.option == last_option_; });
+                        [&](const CandidateScore& s) { return s.arm.option == last_option_; });
   at_ = 0;
   samples_ = is_restoring_ ? control_.window : kFirstSamples;
 }
@@ -62,15 +64,16 @@ std::optional<ControlEvent> Controller::end_block(const Config& config) {
   }
   at_ = 0;
   const bool has_seen_objects =
-      std::ranges::any_of(round_, [](const ArmScore& s) { return !s.of_arm.empty(); });
+      std::ranges::any_of(round_, [](const CandidateScore& s) { return !s.of_arm.empty(); });
   if (!has_seen_objects) return std::nullopt;  // compare again
   round_ = halved(std::move(round_), control_.lead);
   samples_ = std::min(4 * samples_, control_.window);
-  const auto best = std::ranges::find_if(round_, [&](const ArmScore& s) { return is_better(s, control_); });
+  const auto best =
+      std::ranges::find_if(round_, [&](const CandidateScore& s) { return is_better(s, control_); });
   if (best == round_.end()) {
-    const auto most = static_cast<std::size_t>(kMostWindows * control_.window);
-    std::erase_if(round_, [&](const ArmScore& s) { return s.of_arm.size() >= most; });
-    if (round_.empty() && !is_restoring_) step_ = step_ < kMostStep ? 2 * step_ : kLeastStep;
+    const auto most = static_cast<std::size_t>(kMaxWindows * control_.window);
+    std::erase_if(round_, [&](const CandidateScore& s) { return s.of_arm.size() >= most; });
+    if (round_.empty() && !is_restoring_) step_ = step_ < kMaxStep ? 2 * step_ : kMinStep;
     return std::nullopt;
   }
   if (since_report_ < control_.hold) return std::nullopt;
@@ -79,7 +82,7 @@ std::optional<ControlEvent> Controller::end_block(const Config& config) {
   round_.clear();
   since_report_ = 0;
   last_option_ = event.arm.option;
-  step_ = kLeastStep;
+  step_ = kMinStep;
   is_restoring_ = false;  // the next search is
   if (!tunes) reported_.push_back(event.arm);
   return event;
@@ -89,7 +92,8 @@ void Controller::forget() {
   if (candidate_) candidate_->forget();
 }
 
-std::optional<ControlEvent> Controller::next(const Step& step, const Follower& follower, const Again& again) {
+std::optional<ControlEvent> Controller::next(const TrackedFrame& step, const Follower& follower,
+                                             const Again& again) {
   ++since_report_;
   credit_ += double{control_.budget};
   const Config& config = follower.config().segmentation;
@@ -99,7 +103,7 @@ std::optional<ControlEvent> Controller::next(const Step& step, const Follower& f
       if (!round_.empty() && credit_ >= samples_ + 1) begin_block(follower);
       return std::nullopt;
     }
-    const Step tried = again(*candidate_);
+    const TrackedFrame tried = again(*candidate_);
     const bool has_objects = tried.reliability.steadiness > 0 || step.reliability.steadiness > 0;
     if (--left_ < samples_ && has_objects) {
       round_[at_].of_arm.push_back(tried.reliability.steadiness);

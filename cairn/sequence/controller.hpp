@@ -17,10 +17,10 @@ class Controller {
   explicit Controller(const FollowConfig& start);
 
   /// Processes the present frame with another follower.
-  using Again = std::function<Step(Follower& candidate)>;
+  using Again = std::function<TrackedFrame(Follower& candidate)>;
 
   /// `step`: the results of `follower` for the frame. The caller sets what the event says.
-  std::optional<ControlEvent> next(const Step& step, const Follower& follower, const Again& again);
+  std::optional<ControlEvent> next(const TrackedFrame& step, const Follower& follower, const Again& again);
   /// See Follower::forget().
   void forget();
 
@@ -32,7 +32,7 @@ class Controller {
   ControlConfig control_;
   Config start_;   // of the segmentation
   Config preset_;  // nearest to it
-  std::vector<ArmScore> round_;
+  std::vector<CandidateScore> round_;
   std::size_t at_ = 0;  // in round_
   int samples_ = 0;     // frames per block of a round
   std::optional<Follower> candidate_;
@@ -42,7 +42,7 @@ class Controller {
   std::string last_option_;    // the last one that helped
   float step_ = 2;             // factor for numbers
   bool is_restoring_ = false;  // whether the search is among the preset's values
-  std::vector<Arm> reported_;
+  std::vector<OptionCandidate> reported_;
 };
 
 }  // namespace cairn

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <cairn/sequence/landmark_geometry.hpp>
 
@@ -10,54 +11,79 @@ namespace cairn {
 
 using landmarks::matrix;
 
-Expectation expect(const Landmark& landmark, const LandmarkFrame& frame, const Pose& map_from_odom) {
-  constexpr double kCore = 0.7;     // of the ellipse: its rim often shows background
-  constexpr double kInView = 0.85;  // of the samples
-  constexpr double kSigma_px = 0.35;
+namespace {
+
+constexpr double kNearest_m = 0.3;
+constexpr double kSigma_px = 0.35;
+
+/// What is expected of the pixels of a landmark: its ellipse in the image, and its disparities.
+struct Silhouette {
+  double u = 0, v = 0;            // px; of its centre
+  double a = 0, b = 0;            // px; half axes
+  double core_a = 0, core_b = 0;  // px; without the rim, which often shows background
+  double centre_z = 0;            // m
+  double behind = 0, before = 0;  // px; disparities farther or nearer than the landmark
+  double at_centre = 0;           // px
+  bool stands = false;            // on the floor
+};
+
+/// nullopt if its centre is behind the camera, too near or outside the image.
+std::optional<Silhouette> silhouette_of(const Landmark& landmark, const LandmarkFrame& frame,
+                                        const Pose& camera_from_map) {
+  constexpr double kCore = 0.7;  // of the ellipse
   constexpr double kSigmas = 3;
-  constexpr int kSide = 13;  // samples across
-  constexpr double kNearest_m = 0.3;
-  Expectation result;
-  const Pose map_from_camera = map_from_odom * frame.odom_from_camera;
-  const Pose camera_from_map = inverse(map_from_camera);
+  constexpr double kStands_m = 0.15;
   const Point3 centre = camera_from_map(landmark.position_m);
-  if (centre.z < kNearest_m) return result;
+  if (centre.z < kNearest_m) return std::nullopt;
+  Silhouette s;
   const auto focal = static_cast<double>(frame.rig.focal_px);
-  const double u = static_cast<double>(frame.rig.cx_px) + focal * centre.x / centre.z;
-  const double v = static_cast<double>(frame.rig.cy_px) + focal * centre.y / centre.z;
-  const int width = frame.disparity_px.width();
-  const int height = frame.disparity_px.height();
-  if (u < 0 || v < 0 || u >= width || v >= height) return result;
+  s.u = static_cast<double>(frame.rig.cx_px) + focal * centre.x / centre.z;
+  s.v = static_cast<double>(frame.rig.cy_px) + focal * centre.y / centre.z;
+  if (s.u < 0 || s.v < 0 || s.u >= frame.disparity_px.width() || s.v >= frame.disparity_px.height())
+    return std::nullopt;
   const double across_m = (landmark.size.narrowest_m + landmark.size.widest_m) / 2;
   const double sigma_m = std::sqrt(matrix(landmark.covariance_m2).topLeftCorner<2, 2>().trace() / 2);
-  const double a = focal * across_m / 2 / centre.z;
-  const double b = focal * landmark.size.height_m / 2 / centre.z;
+  s.a = focal * across_m / 2 / centre.z;
+  s.b = focal * landmark.size.height_m / 2 / centre.z;
   // The core excludes the margin left by the landmark's position uncertainty.
-  const double core_a = std::max(kCore * a / 2, kCore * a - focal * sigma_m / centre.z / 2);
-  const double core_b = kCore * b;
+  s.core_a = std::max(kCore * s.a / 2, kCore * s.a - focal * sigma_m / centre.z / 2);
+  s.core_b = kCore * s.b;
+  s.centre_z = centre.z;
   const double depth_sigma_px =
       focal * static_cast<double>(frame.rig.baseline_m) / (centre.z * centre.z) * sigma_m;
   const double margin = kSigmas * std::hypot(kSigma_px, depth_sigma_px);
   const auto disparity_at = [&](double z) {
     return focal * static_cast<double>(frame.rig.baseline_m) / z - static_cast<double>(frame.rig.doffs_px);
   };
-  const double behind = disparity_at(centre.z + landmark.size.widest_m / 2) - margin;
-  const double before = disparity_at(std::max(kNearest_m, centre.z - landmark.size.widest_m / 2)) + margin;
-  // The floor just behind an object's base has nearly the same disparity; it is recognised by being flat.
+  s.behind = disparity_at(centre.z + landmark.size.widest_m / 2) - margin;
+  s.before = disparity_at(std::max(kNearest_m, centre.z - landmark.size.widest_m / 2)) + margin;
+  s.at_centre = disparity_at(centre.z) - kSigma_px;
+  s.stands = landmark.position_m.z - landmark.size.height_m / 2 < kStands_m;
+  return s;
+}
+
+/// The floor just behind an object's base has nearly the same disparity; it is recognised by being flat.
+bool is_floor(const Silhouette& s, Point3 pixel, const LandmarkFrame& frame, const Pose& map_from_camera) {
   constexpr double kFlat_m = 0.06;
   constexpr double kAbove_m = 0.12;
-  constexpr double kStands_m = 0.15;
-  const bool stands = landmark.position_m.z - landmark.size.height_m / 2 < kStands_m;
-  const double at_centre = disparity_at(centre.z) - kSigma_px;
-  const auto is_floor = [&](int px, int py, double d) {
-    if (!stands || d >= at_centre) return false;
-    const auto seen =
-        frame.rig.point_in_camera_m(static_cast<float>(px), static_cast<float>(py), static_cast<float>(d));
-    if (!seen) return false;
-    const Point3 p{static_cast<double>(seen->x), static_cast<double>(seen->y), static_cast<double>(seen->z)};
-    const double height_m = map_from_camera(p).z;
-    return std::abs(height_m) < kFlat_m && map_from_camera((centre.z / p.z) * p).z > height_m + kAbove_m;
-  };
+  if (!s.stands || pixel.z >= s.at_centre) return false;
+  const auto seen = frame.rig.point_in_camera_m(static_cast<float>(pixel.x), static_cast<float>(pixel.y),
+                                                static_cast<float>(pixel.z));
+  if (!seen) return false;
+  const Point3 p{static_cast<double>(seen->x), static_cast<double>(seen->y), static_cast<double>(seen->z)};
+  const double height_m = map_from_camera(p).z;
+  return std::abs(height_m) < kFlat_m && map_from_camera((s.centre_z / p.z) * p).z > height_m + kAbove_m;
+}
+
+}  // namespace
+
+Expectation expect(const Landmark& landmark, const LandmarkFrame& frame, const Pose& map_from_odom) {
+  constexpr double kInView = 0.85;  // of the samples
+  constexpr int kSide = 13;         // samples across
+  const Pose map_from_camera = map_from_odom * frame.odom_from_camera;
+  const std::optional<Silhouette> s = silhouette_of(landmark, frame, inverse(map_from_camera));
+  Expectation result;
+  if (!s) return result;
   int inside = 0;
   int wanted = 0;
   for (int j = 0; j < kSide; ++j) {
@@ -66,16 +92,16 @@ Expectation expect(const Landmark& landmark, const LandmarkFrame& frame, const P
       const double y = 2.0 * (j + 0.5) / kSide - 1;
       if (x * x + y * y > 1) continue;
       ++wanted;
-      const int px = static_cast<int>(std::floor(u + x * core_a + 0.5));
-      const int py = static_cast<int>(std::floor(v + y * core_b + 0.5));
-      if (px < 0 || py < 0 || px >= width || py >= height) continue;
+      const int px = static_cast<int>(std::floor(s->u + x * s->core_a + 0.5));
+      const int py = static_cast<int>(std::floor(s->v + y * s->core_b + 0.5));
+      if (!frame.disparity_px.contains(px, py)) continue;
       ++inside;
       const auto d = static_cast<double>(frame.disparity_px(px, py));
       if (std::isnan(d)) {
         ++result.unknown;
-      } else if (d < behind || is_floor(px, py, d)) {
+      } else if (d < s->behind || is_floor(*s, {double(px), double(py), d}, frame, map_from_camera)) {
         ++result.farther;
-      } else if (d > before) {
+      } else if (d > s->before) {
         ++result.nearer;
       } else {
         ++result.agree;
@@ -83,7 +109,7 @@ Expectation expect(const Landmark& landmark, const LandmarkFrame& frame, const P
     }
   }
   if (inside < kInView * wanted) return {};
-  result.in_view = static_cast<int>(std::numbers::pi * a * b);
+  result.in_view = static_cast<int>(std::numbers::pi * s->a * s->b);
   return result;
 }
 

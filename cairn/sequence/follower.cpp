@@ -36,14 +36,14 @@ Image<TrackId> ids_of(const Tracks& tracks, const Objects& objects, const Exec& 
 }
 
 /// 255 where moving objects are expected, else 0. `map_from_camera`: the predicted pose.
-Image<std::uint8_t> expected_movers(const Remembered& remembered, const Tracks& tracks,
+Image<std::uint8_t> expected_movers(const MaskMemory& remembered, const Tracks& tracks,
                                     const Pose& map_from_camera, Stamp now, const StereoRig& rig, Size size,
                                     const Exec& exec) {
   Tracks moving;
   for (const Track& track : tracks.list)
     if (track.is_moving && track.state == TrackState::confirmed) moving.list.push_back(track);
   if (moving.list.empty()) return {};
-  const Warped warped = warp(remembered, moving, map_from_camera, now, rig, size, exec);
+  const MaskPrediction warped = warp(remembered, moving, map_from_camera, now, rig, size, exec);
   Image<std::uint8_t> mask(size, exec.pool);
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x)
@@ -98,9 +98,9 @@ void Follower::forget() {
   if (controller_) controller_->forget();
 }
 
-Step Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
-                    const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
-  Step step = follow(pair, stamp, prior, map_from_camera, scan);
+TrackedFrame Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
+                            const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
+  TrackedFrame step = follow(pair, stamp, prior, map_from_camera, scan);
   if (controller_) {
     step.control = controller_->next(step, *this, [&](Follower& candidate) {
       return candidate.follow(pair, stamp, prior, map_from_camera, scan);
@@ -147,8 +147,8 @@ Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoRe
   const Image<std::uint8_t> moving =
       expected_movers(state_.remembered, state_.tracks, odometry.map_from_camera * inverse(expected_step),
                       stamp, *rig_, pair.size(), exec_);
-  OdometryStep moved = advance_odometry(odometry, pair.left(), seen.disparity, seen.confidence, moving, *rig_,
-                                        prior, config_.odometry);
+  OdometryStep moved = advance_odometry(odometry, {pair.left(), seen.disparity, seen.confidence, moving},
+                                        *rig_, prior, config_.odometry);
   const Pose before = odometry.map_from_camera;
   odometry = std::move(moved.state);
   motion = moved.motion;
@@ -161,17 +161,33 @@ Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoRe
   return motion;
 }
 
-Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
-                      const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
+void Follower::match_tracks(TrackedFrame& step, const StereoPair& pair, const MaskPrediction& predicted,
+                            const Covariance6& since_key, const StereoRig& rig) {
+  const Frame& frame = step.frame;
+  const TrackingConfig& config = config_.tracking;
+  const CameraAt camera{step.stamp, step.map_from_camera, since_key, step.is_lost};
+  const Overlaps overlaps = overlaps_of(predicted, state_.tracks, frame.objects, frame.disparity);
+  const auto detections = detect(frame, {pair.left(), pair.left_rgb()}, rig_, config);
+  const auto matches = step.is_lost ? std::vector<Assignment>{}
+                                    : associate(state_.tracks, detections, overlaps, camera, config);
+  state_.tracks = advance_tracks(std::move(state_.tracks), detections, matches, overlaps, camera, config);
+  state_.remembered = remember(std::move(state_.remembered), state_.tracks, frame.objects, frame.disparity,
+                               step.map_from_camera, step.stamp, rig);
+  step.tracks = state_.tracks;
+  step.ids = ids_of(state_.tracks, frame.objects, exec_);
+}
+
+TrackedFrame Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
+                              const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
   check(pair, stamp);
-  Step step;
+  TrackedFrame step;
   step.index = state_.frames;
   step.stamp = stamp;
   const Config& config = config_.segmentation;
   validate(config, pair.size(), rig_.has_value());
   const StereoRig rig = rig_.value_or(picture_rig(pair.size()));
   Covariance6 since_key{};
-  Warped warped;
+  MaskPrediction warped;
   // The motion of the camera, and the tracks as predicted for this frame.
   const auto predict = [&](const StereoResult& stereo) {
     step.motion = move_camera(pair, stamp, stereo, prior, map_from_camera);
@@ -179,8 +195,8 @@ Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<M
     step.pose_covariance = state_.odometry.covariance;
     step.is_lost = state_.odometry.lost;
     since_key = covariance_since_key(state_.odometry);
-    state_.tracks = tied_to_key(std::move(state_.tracks), step.map_from_camera,
-                                state_.odometry.key_covariance, step.motion.is_new_segment);
+    state_.tracks = rebased_to_keyframe(std::move(state_.tracks), step.map_from_camera,
+                                        state_.odometry.key_covariance, step.motion.is_new_segment);
     warped = warp(state_.remembered, state_.tracks, step.map_from_camera, stamp, rig, pair.size(), exec_);
   };
 
@@ -189,7 +205,7 @@ Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<M
   const auto choose = [&](RegionCandidates& found, const ChoiceLimits& limits) {
     predict(found.match.stereo);
     best_right = std::move(found.match.matches.best_right);
-    std::vector<float> scores = score_nodes(found.tree, whole_object_trees(), limits, exec_);
+    std::vector<float> scores = score_nodes(found.tree, object_classifier(), limits, exec_);
     if (!step.is_lost) {
       scores = repaired_scores(found.tree, std::move(scores), found.superpixels, warped, state_.tracks,
                                config_.repair);
@@ -203,29 +219,15 @@ Step Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<M
     step.frame = segment_by_paper(FrameInput::from(pair), run);
     predict(step.frame);
   }
-  const Frame& frame = step.frame;
-  const Pose& pose = step.map_from_camera;
   state_.size = pair.size();
   state_.before = stamp;
   ++state_.frames;
 
-  // Match objects and tracks …
-  const Overlaps overlaps = overlaps_of(warped, state_.tracks, frame.objects, frame.disparity);
-  const auto sightings = sight(frame, {pair.left(), pair.left_rgb()}, rig_, config_.tracking);
-  const auto matches =
-      step.is_lost ? std::vector<Match>{}
-                   : associate(state_.tracks, sightings, overlaps, pose, since_key, stamp, config_.tracking);
-  state_.tracks = advance_tracks(std::move(state_.tracks), sightings, matches, overlaps, pose, since_key,
-                                 step.is_lost, stamp, config_.tracking);
-  state_.remembered =
-      remember(std::move(state_.remembered), state_.tracks, frame.objects, frame.disparity, pose, stamp, rig);
-  step.tracks = state_.tracks;
-  step.ids = ids_of(state_.tracks, frame.objects, exec_);
+  match_tracks(step, pair, warped, since_key, rig);
 
-  // … and judge how reliable the result is.
   const bool looks_for_floor = config.ground.source == GroundSource::automatic;
   state_.reliability =
-      judge(step, warped, {pair, best_right, rig_, looks_for_floor, scan}, state_.reliability);
+      assess_reliability(step, warped, {pair, best_right, rig_, looks_for_floor, scan}, state_.reliability);
   step.reliability = state_.reliability;
   return step;
 }

@@ -13,7 +13,7 @@
 namespace cairn {
 
 /// The results of one frame of a sequence.
-struct Step {
+struct TrackedFrame {
   int index = 0;  // from 0
   Stamp stamp;
   Frame frame;
@@ -46,8 +46,10 @@ class Follower {
   /// one before, or the configuration does not suit its size. `prior`: the motion since the frame before.
   /// `map_from_camera`: the pose of the camera if the robot knows it; used unchanged, without motion
   /// estimation. `scan`: of a laser at this time.
-  Step next(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior = std::nullopt,
-            const std::optional<Pose>& map_from_camera = std::nullopt, const LaserScan* scan = nullptr);
+  TrackedFrame next(const StereoPair& pair, Stamp stamp,
+                    const std::optional<MotionPrior>& prior = std::nullopt,
+                    const std::optional<Pose>& map_from_camera = std::nullopt,
+                    const LaserScan* scan = nullptr);
 
   /// Announces a gap before the next frame (see source.max_gap), during which the motion of camera and
   /// objects is unknown. All tracks are lost until seen again, tentative ones end, and unless the camera
@@ -65,8 +67,11 @@ class Follower {
   void set_config(FollowConfig config);
 
  private:
-  Step follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
-              const std::optional<Pose>& map_from_camera, const LaserScan* scan);
+  /// Matches the frame's objects with the tracks, which advance.
+  void match_tracks(TrackedFrame& step, const StereoPair& pair, const MaskPrediction& predicted,
+                    const Covariance6& since_key, const StereoRig& rig);
+  TrackedFrame follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
+                      const std::optional<Pose>& map_from_camera, const LaserScan* scan);
   void begin_control();
   /// Throws Error unless the frame continues the sequence.
   void check(const StereoPair& pair, Stamp stamp) const;
@@ -82,7 +87,7 @@ class Follower {
     Stamp before;
     OdometryState odometry;
     Tracks tracks;
-    Remembered remembered;
+    MaskMemory remembered;
     Reliability reliability;
   };
 

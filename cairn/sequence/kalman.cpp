@@ -111,7 +111,7 @@ Covariance3 in_map(const Covariance3& in_camera_m2, Point3 point_in_camera_m, co
                             jacobian * matrix(pose_covariance) * jacobian.transpose()));
 }
 
-Filter3 seen_anew(Filter3 filter, Vec3 extent_m, Point3 seen_from_m, Point3 camera_m) {
+Filter3 moved_viewpoint(Filter3 filter, Vec3 extent_m, Point3 seen_from_m, Point3 camera_m) {
   const Vector3 before = vector(seen_from_m - filter.position_m);
   const Vector3 now = vector(camera_m - filter.position_m);
   if (!(before.norm() > 0 && now.norm() > 0)) return filter;

@@ -34,7 +34,7 @@ Covariance3 in_map(const Covariance3& in_camera_m2, Point3 point_in_camera_m, co
 
 /// A static object seen from a new side: the centre of its visible surface moves around it with the camera, on
 /// the floor, by a share of its width, and is less certain. (nearer_surface)
-Filter3 seen_anew(Filter3 filter, Vec3 extent_m, Point3 seen_from_m, Point3 camera_m);
+Filter3 moved_viewpoint(Filter3 filter, Vec3 extent_m, Point3 seen_from_m, Point3 camera_m);
 
 /// A linear motion through positions (least squares, constant weights).
 struct Drift {

@@ -73,20 +73,20 @@ inline Matrix4 carried(const Matrix4& covariance, Point3 way_m) {
 
 /// A position in the map of something in the odometry frame: uncertain by itself and by the pose of that
 /// frame.
-struct Placed {
+struct Placement {
   Eigen::Vector3d position_m;
   Matrix3 covariance_m2;
 };
-Placed place(const Candidate& candidate, const Located& located);
+Placement place(const Candidate& candidate, const MapLocation& located);
 
 /// One landmark and its observed position, both in the map.
 struct Pull {
-  Placed seen;
-  Placed known;
+  Placement seen;
+  Placement known;
 };
 /// `located` rotated about the camera and translated so that observed positions match the known ones as well
 /// as their covariances demand; a rotation about z and a translation. (Gauss-Newton, Huber weights)
-Located corrected(const Located& located, const std::vector<Pull>& pulls);
+MapLocation corrected(const MapLocation& located, const std::vector<Pull>& pulls);
 
 /// The look from an octant; a new one, with -1 pixels, if there is none.
 LandmarkLook& look_from(Landmark& landmark, int octant);

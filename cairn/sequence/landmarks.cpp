@@ -23,7 +23,7 @@ using landmarks::matrix;
 using landmarks::Matrix3;
 using landmarks::Matrix4;
 using landmarks::Matrix6;
-using landmarks::Placed;
+using landmarks::Placement;
 using landmarks::point;
 using landmarks::position_and_yaw;
 using landmarks::Pull;
@@ -38,7 +38,7 @@ constexpr double kGone = -2;
 constexpr int kGoneFrames = 5;
 constexpr double kThroughShare = 0.6;
 constexpr double kThroughMargin = 0.3;  // added to the share visible through the place of a present object
-constexpr int kLeastPixels = 200;
+constexpr int kMinPixels = 200;
 constexpr double kLongUnseen_s = 5;
 constexpr double kClosure_s = 5;
 constexpr int kSteadyFrames = 5;
@@ -163,8 +163,8 @@ void gather(TrackEvidence& evidence, const Track& track, const LandmarkFrame& fr
   const double distance = std::max(1e-6, length(away));
   const Point3 centre = track.position_m + (nearer_surface::kShare * across / distance) * away;
   // The track's filter averages noise; this averages over viewing directions.
-  constexpr int kMost = 20;
-  evidence.centres = std::min(evidence.centres + 1, kMost);
+  constexpr int kMax = 20;
+  evidence.centres = std::min(evidence.centres + 1, kMax);
   evidence.centre_m = evidence.centre_m + (1.0 / evidence.centres) * (centre - evidence.centre_m);
   const auto over_floor = static_cast<double>(track.height_over_floor_m);
   if (evidence.height_over_floor_m == 0) evidence.height_over_floor_m = over_floor;
@@ -239,7 +239,7 @@ void show(Landmark& landmark, const Track& track, const VisibleArea& shown, int 
 void update(Landmark& landmark, const TrackEvidence& evidence, const Track& track,
             const LandmarksState& state, const LandmarkFrame& frame) {
   const Candidate candidate = candidate_of(evidence, track);
-  const Placed seen = landmarks::place(candidate, state.located);
+  const Placement seen = landmarks::place(candidate, state.located);
   landmark.position_m = point(seen.position_m);
   landmark.covariance_m2 = landmarks::rows_of(seen.covariance_m2);
   landmark.size = evidence.size;
@@ -354,9 +354,9 @@ void begin_segment(LandmarksState& state, const LandmarkFrame& frame, const Land
 void correct(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config) {
   if (!state.closure || state.closure->last != frame.stamp) return;
   std::vector<Pull> pulls;
-  Located before = state.closure->before;
+  MapLocation before = state.closure->before;
   before.camera_in_odom_m = state.located.camera_in_odom_m;
-  Located exact = before;
+  MapLocation exact = before;
   exact.covariance = {};  // the pose's covariance is the prior, not part of the measurement
   for (const TrackId id : state.closure->tracks) {
     const TrackEvidence* evidence = evidence_of(state, id);
@@ -406,7 +406,7 @@ bool is_contradicted(const LandmarksState& state, const Recognition& found, cons
   for (const Landmark& landmark : state.map.list) {
     if (landmark.is_gone) continue;
     const Expectation there = expect(landmark, frame, *found.map_from_odom);
-    if (there.in_view >= kLeastPixels && there.farther > kThroughShare * there.samples()) ++against;
+    if (there.in_view >= kMinPixels && there.farther > kThroughShare * there.samples()) ++against;
   }
   return against >= found.pairs.size();
 }
@@ -453,7 +453,7 @@ void gather_all(LandmarksState& state, const LandmarkFrame& frame, const Landmar
 void find_place(LandmarksState& state, const std::vector<Candidate>& candidates, const LandmarkFrame& frame,
                 const LandmarksConfig& config, std::vector<LandmarkEvent>& events) {
   ++state.frames_not_located;
-  const std::optional<Located> guess = state.has_guess ? std::optional(state.located) : std::nullopt;
+  const std::optional<MapLocation> guess = state.has_guess ? std::optional(state.located) : std::nullopt;
   const Recognition found = relocate(state.map, candidates, config, guess);
   if (!found.map_from_odom || is_contradicted(state, found, frame)) return;
   const Point3 guessed = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
@@ -560,7 +560,7 @@ void set_down(const LandmarksState& state, TrackEvidence& evidence, const Landma
               std::vector<LandmarkEvent>& events) {
   evidence.was_moving = false;
   const Candidate candidate = candidate_of(evidence, track);
-  const Placed here = landmarks::place(candidate, state.located);
+  const Placement here = landmarks::place(candidate, state.located);
   const Eigen::Vector3d way = here.position_m - vector(landmark.position_m);
   const Matrix3 covariance = here.covariance_m2 + matrix(landmark.covariance_m2);
   const bool is_same = score_of(candidate, landmark) >= static_cast<double>(config.min_score);
@@ -575,15 +575,15 @@ void set_down(const LandmarksState& state, TrackEvidence& evidence, const Landma
   evidence.before.reset();
 }
 
-struct Updated {
+struct LandmarkRefresh {
   std::vector<LandmarkId> seen;
   bool has_added = false;
 };
 
 /// Creates landmarks, and updates those in view.
-Updated update_seen(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config,
-                    std::vector<LandmarkEvent>& events) {
-  Updated result;
+LandmarkRefresh update_seen(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config,
+                            std::vector<LandmarkEvent>& events) {
+  LandmarkRefresh result;
   const std::vector<VisibleArea> shown = visible_areas(frame);
   for (TrackEvidence& evidence : state.tracks) {
     const Track& track = *track_of(*frame.tracks, evidence.track);
@@ -618,7 +618,7 @@ Updated update_seen(LandmarksState& state, const LandmarkFrame& frame, const Lan
 bool look_for(LandmarksState& state, Landmark& landmark, const Expectation& there, const LandmarkFrame& frame,
               std::vector<LandmarkEvent>& events) {
   const int samples = std::max(1, there.samples());
-  if (landmark.is_gone || there.in_view < kLeastPixels || 2 * there.nearer > samples) return false;
+  if (landmark.is_gone || there.in_view < kMinPixels || 2 * there.nearer > samples) return false;
   ++landmark.expected;
   const double farther = static_cast<double>(there.farther) / samples;
   if (farther < std::max(kThroughShare, landmark.open_share + kThroughMargin)) {
@@ -668,7 +668,7 @@ bool update_presence(LandmarksState& state, const std::vector<LandmarkId>& seen,
 
 }  // namespace
 
-Covariance6 camera_covariance(const Located& located, const Covariance6& pose_covariance) {
+Covariance6 camera_covariance(const MapLocation& located, const Covariance6& pose_covariance) {
   // Roll and pitch come from odometry. Their correlations with the other components are dropped: they may be
   // inconsistent with the covariance from recognition.
   const Matrix3 attitude = matrix(pose_covariance).bottomRightCorner<3, 3>();
@@ -690,7 +690,7 @@ bool is_guessed(const LandmarkFrame& frame) {
   return is_refused || frame.odometry_suspect;
 }
 
-LandmarkFrame landmark_frame(const Step& step, const StereoRig& rig, View<const Gray> left,
+LandmarkFrame landmark_frame(const TrackedFrame& step, const StereoRig& rig, View<const Gray> left,
                              View<const Rgb> left_rgb) {
   LandmarkFrame frame;
   frame.index = step.index;
@@ -728,9 +728,9 @@ LandmarksState begin_landmarks(LandmarkMap map, std::int64_t run, const std::opt
   return state;
 }
 
-Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
-                             const LandmarksConfig& config) {
-  Landmarked result;
+LandmarkUpdate advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
+                                 const LandmarksConfig& config) {
+  LandmarkUpdate result;
   if (!frame.is_lost) {
     place_camera(state, frame);
     if (frame.is_new_segment) begin_segment(state, frame, config);
@@ -744,7 +744,7 @@ Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
 
   gather_all(state, frame, config);
   const bool has_recognised = match(state, frame, config, result.events);
-  const Updated updated = update_seen(state, frame, config, result.events);
+  const LandmarkRefresh updated = update_seen(state, frame, config, result.events);
   if (state.is_located) {
     const bool has_gone = update_presence(state, updated.seen, frame, result.events);
     learn_floor(state.map, frame, state.located.map_from_odom * frame.odom_from_camera);

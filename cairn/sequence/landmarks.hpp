@@ -139,7 +139,7 @@ struct Recognition {
 };
 
 /// The pose of the odometry frame in the map, if known.
-struct Located {
+struct MapLocation {
   Pose map_from_odom;
   /// Covariance of x, y, z (m) and yaw (rad) of the camera in the map, row-major.
   std::array<double, 16> covariance{};
@@ -149,13 +149,13 @@ struct Located {
 /// The covariance of the camera pose in the map, along the axes of the map: x, y, z and yaw from `located`,
 /// which includes odometry and recognition; roll and pitch from odometry, whose `pose_covariance` is along
 /// the axes of its own frame.
-Covariance6 camera_covariance(const Located& located, const Covariance6& pose_covariance);
+Covariance6 camera_covariance(const MapLocation& located, const Covariance6& pose_covariance);
 
 /// Matches candidates to landmarks with a known pose: position, size and height exclude, colours decide. A
 /// candidate and a landmark are paired if each is the best match of the other. Landmarks in `taken` are left
 /// out.
 Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                      const Located& located, const std::vector<LandmarkId>& taken,
+                      const MapLocation& located, const std::vector<LandmarkId>& taken,
                       const LandmarksConfig& config);
 
 /// The same with an unknown pose: the largest constellation of pairs with consistent mutual distances, of at
@@ -163,7 +163,7 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
 /// probable pose; a place within its 95 % needs only `min_pairs`. The pose is a rotation about z and a
 /// translation. Otherwise a refusal.
 Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                     const LandmarksConfig& config, const std::optional<Located>& guess = std::nullopt);
+                     const LandmarksConfig& config, const std::optional<MapLocation>& guess = std::nullopt);
 
 /// The input of landmarks for one frame. Views are borrowed for the call.
 struct LandmarkFrame {
@@ -189,7 +189,7 @@ struct LandmarkFrame {
 /// needed.
 bool is_guessed(const LandmarkFrame& frame);
 /// Borrows from `step` and the images.
-LandmarkFrame landmark_frame(const Step& step, const StereoRig& rig, View<const Gray> left,
+LandmarkFrame landmark_frame(const TrackedFrame& step, const StereoRig& rig, View<const Gray> left,
                              View<const Rgb> left_rgb);
 
 /// Pixels of the silhouette of a landmark, by their content in the frame.
@@ -248,26 +248,26 @@ struct LandmarksState {
   LandmarkMap map;
   std::int64_t run = 0;
   bool is_located = true;
-  Located located;
+  MapLocation located;
   // The last pose known from more than odometry, and odometry's own covariance of its pose then.
-  Located anchor;
+  MapLocation anchor;
   Covariance6 anchor_pose_covariance{};
   Stamp segment_began{std::numeric_limits<std::int64_t>::min()};
   bool has_guess = false;             // not located, but `located` is a guess: a new segment of odometry
   std::vector<TrackEvidence> tracks;  // by id, ascending
   struct Closure {                    // landmarks recognised together
-    Located before;
+    MapLocation before;
     Stamp last;
     std::vector<TrackId> tracks;
   };
   std::optional<Closure> closure;
-  struct Vanished {
+  struct VanishedLandmark {
     LandmarkId landmark = LandmarkId::none;
     std::vector<int> frames;
   };
-  std::vector<Vanished> vanished;      // gone in this run, or about to be
-  std::vector<LandmarkId> found;       // in this run, ascending
-  std::vector<LandmarkId> unreported;  // of these: on previously free floor
+  std::vector<VanishedLandmark> vanished;  // gone in this run, or about to be
+  std::vector<LandmarkId> found;           // in this run, ascending
+  std::vector<LandmarkId> unreported;      // of these: on previously free floor
   int frames_not_located = 0;
 
   /// The odometry frame in the map; nullopt if unknown.
@@ -289,7 +289,7 @@ struct LandmarkOfTrack {
   double score = 0;            // of the recognition
 };
 
-struct Landmarked {
+struct LandmarkUpdate {
   LandmarksState state;
   std::vector<LandmarkOfTrack> tracks;  // in the order of frame.tracks
   std::vector<LandmarkEvent> events;    // of this frame
@@ -299,23 +299,24 @@ struct Landmarked {
 /// tracks belong to the map again once enough landmarks locate the segment in it; a map that is too small to
 /// do so, if it is entirely of this run, starts again.
 /// (docs/stages/landmarks.md)
-Landmarked advance_landmarks(LandmarksState state, const LandmarkFrame& frame, const LandmarksConfig& config);
+LandmarkUpdate advance_landmarks(LandmarksState state, const LandmarkFrame& frame,
+                                 const LandmarksConfig& config);
 
 /// The changes at the end of a run: the last event of each landmark, without those that went and came back.
 std::vector<LandmarkEvent> changes_of(const std::vector<LandmarkEvent>& events);
 
 /// `other` transformed into the frame of `map` by relocation, recognised landmarks merged, the others added.
 /// `map_from_other`: the transform, if known.
-struct Merged {
+struct MapMerge {
   LandmarkMap map;
   std::vector<LandmarkPair> pairs;  // landmark of `other` (as track number), landmark of `map`
   std::optional<Pose> map_from_other;
   RecognitionRefusal refusal = RecognitionRefusal::none;
 };
-Merged merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
-             const LandmarksConfig& config);
+MapMerge merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
+               const LandmarksConfig& config);
 /// The same for two copies of one map: landmarks that existed when it was copied are paired by id, and the
 /// newer record is kept (by run, then by last detection); landmarks added since are recognised or added.
-Merged merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config);
+MapMerge merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config);
 
 }  // namespace cairn

@@ -52,15 +52,15 @@ std::string information_text(const Eigen::Matrix<double, N, N, Eigen::RowMajor>&
 }
 
 Matrix3 information_of(const Covariance3& covariance) {
-  constexpr double kLeast = 1e-8;  // 0.1 mm; an exact position would have no inverse
-  return (landmarks::matrix(covariance) + kLeast * Matrix3::Identity()).inverse();
+  constexpr double kMin = 1e-8;  // 0.1 mm; an exact position would have no inverse
+  return (landmarks::matrix(covariance) + kMin * Matrix3::Identity()).inverse();
 }
 
 /// Covariance of the motion between two poses of a run, along the map's axes: the second covariance minus the
 /// first one propagated. Where a correction by landmarks between the two reduced it, the step gets the
 /// covariances of both poses together.
 Matrix6 covariance_of_step(const MapPose& before, const MapPose& now) {
-  constexpr double kLeast = 1e-6;     // 1 mm, 1 mrad
+  constexpr double kMin = 1e-6;       // 1 mm, 1 mrad
   constexpr double kRounding = 1e-3;  // of the larger one
   constexpr std::array<Eigen::Index, 2> kTilt{3, 4};
   const Matrix6 a = landmarks::matrix(before.covariance);
@@ -72,12 +72,12 @@ Matrix6 covariance_of_step(const MapPose& before, const MapPose& now) {
   const Matrix4 grown = placed - carried;
   const double smallest =
       Eigen::SelfAdjointEigenSolver<Matrix4>(grown, Eigen::EigenvaluesOnly).eigenvalues()[0];
-  const bool is_corrected = smallest < -kRounding * carried.trace() - kLeast;
+  const bool is_corrected = smallest < -kRounding * carried.trace() - kMin;
   Matrix6 step = Matrix6::Zero();
   step(kPositionAndYaw, kPositionAndYaw) = is_corrected ? Matrix4(placed + carried) : grown;
   step(kTilt, kTilt) = is_corrected ? Eigen::Matrix2d(b(kTilt, kTilt) + a(kTilt, kTilt))
                                     : Eigen::Matrix2d(b(kTilt, kTilt) - a(kTilt, kTilt));
-  return landmarks::with_clamped_eigenvalues(step, kLeast);
+  return landmarks::with_clamped_eigenvalues(step, kMin);
 }
 
 /// For EDGE_SE3:QUAT, whose error is (t, q): the deviation in the frame of the second camera, q being the

@@ -27,7 +27,7 @@ constexpr int kApplication = 0x63726e31;  // "crn1"
 constexpr int kSchema = 1;
 constexpr int kFramesPerTransaction = 30;
 constexpr double kSecondsPerTransaction = 1;
-constexpr int kMostObservations = 200;  // of one landmark in one run
+constexpr int kMaxObservations = 200;   // of one landmark in one run
 constexpr double kSameBaseline = 0.02;  // relative
 
 constexpr const char* kTables = R"(
@@ -72,12 +72,12 @@ double finite(const SQLite::Column& column, const char* what) {
   return value;
 }
 
-constexpr int kMostWhole = std::numeric_limits<int>::max();
+constexpr int kMaxWhole = std::numeric_limits<int>::max();
 
 int whole(std::int64_t value, const char* what, int least = 0) {
-  if (value < least || value > kMostWhole) {
+  if (value < least || value > kMaxWhole) {
     throw Error(std::string(what) + " is " + std::to_string(value) + ", expected " + std::to_string(least) +
-                " … " + std::to_string(kMostWhole));
+                " … " + std::to_string(kMaxWhole));
   }
   return static_cast<int>(value);
 }
@@ -88,17 +88,17 @@ int whole(const SQLite::Column& column, const char* what, int least = 0) {
 
 /// A side of a landmark, m.
 double side(const SQLite::Column& column, const char* what) {
-  constexpr double kMost_m = 1000;
+  constexpr double kMax_m = 1000;
   const double value = finite(column, what);
-  if (value < 0 || value > kMost_m)
+  if (value < 0 || value > kMax_m)
     throw Error(std::string(what) + " is " + std::to_string(value) + ", expected 0 … 1000 m");
   return value;
 }
 
 /// Ids are counted up from 1, so the highest must leave room.
 LandmarkId landmark_id(std::int64_t value) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 53U;
-  if (value < 1 || value > kMost)
+  constexpr std::int64_t kMax = std::int64_t{1} << 53U;
+  if (value < 1 || value > kMax)
     throw Error("landmark " + std::to_string(value) + ": expected an id of 1 … 2^53");
   return LandmarkId{value};
 }
@@ -249,12 +249,41 @@ struct MapFile::Store {
   std::optional<Pose> map_from_odom;
   std::map<LandmarkId, StoredLandmark> stored;
   std::vector<FloorCell> stored_floor;
-  struct Thinning {
+  struct ThinningRule {
     int every = 1;
     int met = 0;
     int kept = 0;
   };
-  std::map<LandmarkId, Thinning> thinning;
+  std::map<LandmarkId, ThinningRule> thinning;
+
+  /// Opens the database; locks the file for updates.
+  void connect() {
+    constexpr int kPatience_ms = 2000;
+    if (mode == MapMode::update) {
+      lock.file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+      if (lock.file < 0) throw Error(std::string("cannot be written: ") + std::strerror(errno));
+      if (::flock(lock.file, LOCK_EX | LOCK_NB) != 0) throw Error("is in use by another process");
+      database = std::make_unique<SQLite::Database>(
+          path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kPatience_ms);
+      return;
+    }
+    // Without a journal there is no writer. The file is then opened as immutable, since SQLite would
+    // otherwise create files next to it, which fails in a read-only folder.
+    std::error_code unimportant;
+    const bool is_quiet = !fs::exists(path.string() + "-wal", unimportant);
+    database = std::make_unique<SQLite::Database>(uri_of(path) + (is_quiet ? "?immutable=1" : ""),
+                                                  SQLite::OPEN_READONLY | SQLite::OPEN_URI, kPatience_ms);
+  }
+
+  /// The tables of a new map.
+  void create() {
+    database->exec("PRAGMA application_id=" + std::to_string(kApplication));
+    database->exec("PRAGMA user_version=" + std::to_string(kSchema));
+    database->exec(kTables);
+    set("cairn", CAIRN_VERSION);
+    set("frame_id", "map");
+    set("map_id", random_id());
+  }
 
   /// Calls `work` and rethrows its errors as Error with the file's name.
   template <class F>
@@ -300,6 +329,71 @@ struct MapFile::Store {
       database->exec("ROLLBACK");
     } catch (const SQLite::Exception&) {  // SQLite has rolled back already
     }
+  }
+
+  void store_pose(const LandmarkFrame& frame, const MapLocation& located) const {
+    SQLite::Statement put(*database, "INSERT OR REPLACE INTO pose VALUES(?,?,?,?,?,?,?,?,?,?)");
+    put.bind(1, run);
+    put.bind(2, frame.stamp.ns);
+    const auto numbers = numbers_of(located.map_from_odom * frame.odom_from_camera);
+    for (std::size_t i = 0; i < numbers.size(); ++i) put.bind(static_cast<int>(i) + 3, numbers[i]);
+    bind_numbers(put, 10, packed(camera_covariance(located, frame.pose_covariance)));
+    put.exec();
+  }
+
+  void store_event(const LandmarkEvent& event) const {
+    SQLite::Statement put(
+        *database,
+        "INSERT INTO event(run, stamp_ns, kind, landmark, x, y, z, dx, dy, dz, probability, "
+        "frames) VALUES(?,?,?,?,?,?,?,?,?,?,?,?)");
+    int i = 0;
+    put.bind(++i, run);
+    put.bind(++i, event.stamp.ns);
+    put.bind(++i, choice_name(event.kind, kLandmarkEventKinds));
+    put.bind(++i, number(event.landmark));
+    for (const double v : {event.position_m.x, event.position_m.y, event.position_m.z, event.moved_by_m.x,
+                           event.moved_by_m.y, event.moved_by_m.z, event.probability})
+      put.bind(++i, v);
+    put.bind(++i, nlohmann::json(event.frames).dump());
+    put.exec();
+  }
+
+  /// Stores one in `every` observations of a landmark in a run.
+  void store_observation(const LandmarkOfTrack& seen, const LandmarkFrame& frame,
+                         const MapLocation& located) {
+    if (seen.landmark == LandmarkId::none || !stored.contains(seen.landmark)) return;
+    const auto track = std::find_if(frame.tracks->list.begin(), frame.tracks->list.end(),
+                                    [&](const Track& t) { return t.id == seen.track; });
+    if (track == frame.tracks->list.end() || track->object == ObjectId::none) return;
+    ThinningRule& thin = thinning[seen.landmark];
+    if (thin.met++ % thin.every != 0) return;
+    if (thin.kept >= kMaxObservations) halve_observations(seen.landmark, thin);
+    SQLite::Statement put(*database, "INSERT OR REPLACE INTO observation VALUES(?,?,?,?,?,?,?,?,?)");
+    const Point3 at = located.map_from_odom(track->position_m);
+    put.bind(1, run);
+    put.bind(2, frame.stamp.ns);
+    put.bind(3, number(seen.landmark));
+    put.bind(4, number(seen.track));
+    put.bind(5, at.x);
+    put.bind(6, at.y);
+    put.bind(7, at.z);
+    bind_numbers(put, 8, rotated(located.map_from_odom, track->covariance_m2));
+    put.bind(9, static_cast<double>(track->confidence));
+    put.exec();
+    ++thin.kept;
+  }
+
+  /// Of the stored observations, and from now on the rate of new ones.
+  void halve_observations(LandmarkId landmark, ThinningRule& thin) const {
+    SQLite::Statement drop(
+        *database,
+        "DELETE FROM observation WHERE landmark=?1 AND run=?2 AND stamp_ns IN (SELECT stamp_ns FROM "
+        "(SELECT stamp_ns, row_number() OVER (ORDER BY stamp_ns) AS n FROM observation WHERE landmark=?1 "
+        "AND run=?2) WHERE n % 2 = 0)");
+    drop.bind(1, number(landmark));
+    drop.bind(2, run);
+    thin.kept -= drop.exec();
+    thin.every *= 2;
   }
 
   void store_landmark(const Landmark& l) const {
@@ -452,64 +546,55 @@ MapFile::~MapFile() {
   if (store_) store_->rollback();
 }
 
+namespace {
+
+/// Whether the file exists. Throws Error if it cannot be opened in this mode.
+bool check_file(const fs::path& path, bool is_update) {
+  std::error_code unimportant;
+  const auto status = fs::status(path, unimportant);
+  if (fs::is_directory(status)) throw Error("is a folder, expected a map");
+  const bool is_there = fs::exists(status);
+  if (!is_there && !is_update) throw Error("no such file");
+  if (is_there && !fs::is_regular_file(status)) throw Error("is not a regular file");
+  if (!is_there && path.has_parent_path() && !fs::is_directory(path.parent_path(), unimportant))
+    throw Error("its folder does not exist");
+  if (is_there && is_update && ::access(path.c_str(), W_OK) != 0)
+    throw Error("cannot be written: read-only; --read-only uses it unchanged");
+  return is_there;
+}
+
+void check_schema(SQLite::Database& database) {
+  const int application = database.execAndGet("PRAGMA application_id").getInt();
+  const int schema = database.execAndGet("PRAGMA user_version").getInt();
+  if (application != kApplication) throw Error("is the database of another program, expected a map");
+  if (schema > kSchema) {
+    throw Error("was written by a newer cairn: schema " + std::to_string(schema) + ", known up to " +
+                std::to_string(kSchema));
+  }
+  if (schema < 1) throw Error("has schema " + std::to_string(schema) + ", expected 1");
+}
+
+}  // namespace
+
 MapFile MapFile::open(const fs::path& path, MapMode mode, const std::optional<StereoRig>& rig) {
   auto store = std::make_unique<Store>();
   store->path = path;
   store->mode = mode;
   const bool is_update = mode == MapMode::update;
   return store->guarded([&] {
+    const bool is_there = check_file(path, is_update);
     std::error_code unimportant;
-    const auto status = fs::status(path, unimportant);
-    if (fs::is_directory(status)) throw Error("is a folder, expected a map");
-    const bool is_there = fs::exists(status);
-    if (!is_there && !is_update) throw Error("no such file");
-    if (is_there && !fs::is_regular_file(status)) throw Error("is not a regular file");
-    if (!is_there && path.has_parent_path() && !fs::is_directory(path.parent_path(), unimportant))
-      throw Error("its folder does not exist");
-    if (is_there && is_update && ::access(path.c_str(), W_OK) != 0)
-      throw Error("cannot be written: read-only; --read-only uses it unchanged");
-
-    constexpr int kPatience_ms = 2000;
-    if (is_update) {
-      store->lock.file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-      if (store->lock.file < 0) throw Error(std::string("cannot be written: ") + std::strerror(errno));
-      if (::flock(store->lock.file, LOCK_EX | LOCK_NB) != 0) throw Error("is in use by another process");
-      store->database = std::make_unique<SQLite::Database>(
-          path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kPatience_ms);
-    } else {
-      // Without a journal there is no writer. The file is then opened as immutable, since SQLite would
-      // otherwise create files next to it, which fails in a read-only folder.
-      const bool is_quiet = !fs::exists(path.string() + "-wal", unimportant);
-      store->database =
-          std::make_unique<SQLite::Database>(uri_of(path) + (is_quiet ? "?immutable=1" : ""),
-                                             SQLite::OPEN_READONLY | SQLite::OPEN_URI, kPatience_ms);
-    }
+    store->connect();
     SQLite::Database& database = *store->database;
     const bool is_empty = is_update && (!is_there || fs::file_size(path, unimportant) == 0);
-    if (!is_empty) {
-      const int application = database.execAndGet("PRAGMA application_id").getInt();
-      const int schema = database.execAndGet("PRAGMA user_version").getInt();
-      if (application != kApplication) throw Error("is the database of another program, expected a map");
-      if (schema > kSchema) {
-        throw Error("was written by a newer cairn: schema " + std::to_string(schema) + ", known up to " +
-                    std::to_string(kSchema));
-      }
-      if (schema < 1) throw Error("has schema " + std::to_string(schema) + ", expected 1");
-    }
+    if (!is_empty) check_schema(database);
     database.exec("PRAGMA foreign_keys=ON");
     if (is_update) {
       database.exec("PRAGMA journal_mode=WAL");
       database.exec("PRAGMA synchronous=NORMAL");
       database.exec("BEGIN IMMEDIATE");
       store->is_open = true;
-      if (is_empty) {
-        database.exec("PRAGMA application_id=" + std::to_string(kApplication));
-        database.exec("PRAGMA user_version=" + std::to_string(kSchema));
-        database.exec(kTables);
-        store->set("cairn", CAIRN_VERSION);
-        store->set("frame_id", "map");
-        store->set("map_id", random_id());
-      }
+      if (is_empty) store->create();
       database.exec("UPDATE run SET state='aborted' WHERE state='running'");
       if (rig) store->meet(*rig);
       database.exec("COMMIT");
@@ -521,63 +606,79 @@ MapFile MapFile::open(const fs::path& path, MapMode mode, const std::optional<St
   });
 }
 
+namespace {
+
+std::vector<Landmark> load_landmarks(const SQLite::Database& database) {
+  std::vector<Landmark> list;
+  SQLite::Statement rows(
+      database,
+      "SELECT id, x, y, z, cov, narrowest, widest, height, over_floor, log_odds, state, name, "
+      "seen, expected, seen_through, open_share, first_ns, last_ns, run FROM landmark ORDER BY id");
+  while (rows.executeStep()) {
+    Landmark l;
+    l.id = landmark_id(rows.getColumn(0).getInt64());
+    l.position_m = {finite(rows.getColumn(1), "landmark.x"), finite(rows.getColumn(2), "landmark.y"),
+                    finite(rows.getColumn(3), "landmark.z")};
+    l.covariance_m2 = numbers_in<double, 9>(rows.getColumn(4), "landmark.cov");
+    for (const std::size_t i : {0U, 4U, 8U}) {
+      if (l.covariance_m2[i] <= 0) throw Error("landmark.cov is not a covariance");
+    }
+    l.size = {side(rows.getColumn(5), "landmark.narrowest"), side(rows.getColumn(6), "landmark.widest"),
+              side(rows.getColumn(7), "landmark.height")};
+    l.height_over_floor_m = finite(rows.getColumn(8), "landmark.over_floor");
+    l.log_odds = finite(rows.getColumn(9), "landmark.log_odds");
+    const std::string state = rows.getColumn(10).getString();
+    if (state != "gone" && state != "present") throw Error("landmark.state is '" + state + "'");
+    l.is_gone = state == "gone";
+    l.name = rows.getColumn(11).getString();
+    l.seen = whole(rows.getColumn(12), "landmark.seen");
+    l.expected = whole(rows.getColumn(13), "landmark.expected");
+    l.seen_through = whole(rows.getColumn(14), "landmark.seen_through");
+    l.open_share = finite(rows.getColumn(15), "landmark.open_share");
+    l.first = {rows.getColumn(16).getInt64()};
+    l.last = {rows.getColumn(17).getInt64()};
+    l.run = rows.getColumn(18).getInt64();
+    list.push_back(std::move(l));
+  }
+  return list;
+}
+
+/// Adds their looks to landmarks in the order of their ids.
+void load_looks(const SQLite::Database& database, std::vector<Landmark>& list) {
+  SQLite::Statement looks(database,
+                          "SELECT landmark, octant, hist, crop, pixels FROM look ORDER BY landmark, octant");
+  auto at = list.begin();
+  while (looks.executeStep()) {
+    const LandmarkId id{looks.getColumn(0).getInt64()};
+    while (at != list.end() && at->id < id) ++at;
+    if (at == list.end() || at->id != id)
+      throw Error("look of landmark " + std::to_string(number(id)) + ", which does not exist");
+    LandmarkLook look;
+    look.octant = whole(looks.getColumn(1), "look.octant");
+    if (look.octant > 7) throw Error("look.octant is " + std::to_string(look.octant) + ", expected 0 … 7");
+    look.colours = numbers_in<float, std::tuple_size_v<ColourHistogram>>(looks.getColumn(2), "look.hist");
+    const SQLite::Column crop = looks.getColumn(3);
+    if (!crop.isNull()) {
+      look.crop_png.assign(static_cast<const char*>(crop.getBlob()),
+                           static_cast<std::size_t>(crop.getBytes()));
+    }
+    look.pixels = look.crop_pixels = whole(looks.getColumn(4), "look.pixels");
+    at->looks.push_back(std::move(look));
+  }
+}
+
+}  // namespace
+
 LandmarkMap MapFile::load() const {
   return store_->guarded([&] {
+    const SQLite::Database& database = *store_->database;
     LandmarkMap map;
-    SQLite::Statement rows(
-        *store_->database,
-        "SELECT id, x, y, z, cov, narrowest, widest, height, over_floor, log_odds, state, name, "
-        "seen, expected, seen_through, open_share, first_ns, last_ns, run FROM landmark ORDER BY id");
-    while (rows.executeStep()) {
-      Landmark l;
-      l.id = landmark_id(rows.getColumn(0).getInt64());
-      l.position_m = {finite(rows.getColumn(1), "landmark.x"), finite(rows.getColumn(2), "landmark.y"),
-                      finite(rows.getColumn(3), "landmark.z")};
-      l.covariance_m2 = numbers_in<double, 9>(rows.getColumn(4), "landmark.cov");
-      for (const std::size_t i : {0U, 4U, 8U}) {
-        if (l.covariance_m2[i] <= 0) throw Error("landmark.cov is not a covariance");
-      }
-      l.size = {side(rows.getColumn(5), "landmark.narrowest"), side(rows.getColumn(6), "landmark.widest"),
-                side(rows.getColumn(7), "landmark.height")};
-      l.height_over_floor_m = finite(rows.getColumn(8), "landmark.over_floor");
-      l.log_odds = finite(rows.getColumn(9), "landmark.log_odds");
-      const std::string state = rows.getColumn(10).getString();
-      if (state != "gone" && state != "present") throw Error("landmark.state is '" + state + "'");
-      l.is_gone = state == "gone";
-      l.name = rows.getColumn(11).getString();
-      l.seen = whole(rows.getColumn(12), "landmark.seen");
-      l.expected = whole(rows.getColumn(13), "landmark.expected");
-      l.seen_through = whole(rows.getColumn(14), "landmark.seen_through");
-      l.open_share = finite(rows.getColumn(15), "landmark.open_share");
-      l.first = {rows.getColumn(16).getInt64()};
-      l.last = {rows.getColumn(17).getInt64()};
-      l.run = rows.getColumn(18).getInt64();
-      map.list.push_back(std::move(l));
-    }
-    SQLite::Statement looks(
-        *store_->database, "SELECT landmark, octant, hist, crop, pixels FROM look ORDER BY landmark, octant");
-    auto at = map.list.begin();
-    while (looks.executeStep()) {
-      const LandmarkId id{looks.getColumn(0).getInt64()};
-      while (at != map.list.end() && at->id < id) ++at;
-      if (at == map.list.end() || at->id != id)
-        throw Error("look of landmark " + std::to_string(number(id)) + ", which does not exist");
-      LandmarkLook look;
-      look.octant = whole(looks.getColumn(1), "look.octant");
-      if (look.octant > 7) throw Error("look.octant is " + std::to_string(look.octant) + ", expected 0 … 7");
-      look.colours = numbers_in<float, std::tuple_size_v<ColourHistogram>>(looks.getColumn(2), "look.hist");
-      const SQLite::Column crop = looks.getColumn(3);
-      if (!crop.isNull()) {
-        look.crop_png.assign(static_cast<const char*>(crop.getBlob()),
-                             static_cast<std::size_t>(crop.getBytes()));
-      }
-      look.pixels = look.crop_pixels = whole(looks.getColumn(4), "look.pixels");
-      at->looks.push_back(std::move(look));
-    }
-    SQLite::Statement cells(*store_->database, "SELECT x, y, frames FROM floor ORDER BY x, y");
+    map.list = load_landmarks(database);
+    load_looks(database, map.list);
+    SQLite::Statement cells(database, "SELECT x, y, frames FROM floor ORDER BY x, y");
     while (cells.executeStep()) {
-      map.floor.push_back({whole(cells.getColumn(0), "floor.x", -kMostWhole),
-                           whole(cells.getColumn(1), "floor.y", -kMostWhole),
+      map.floor.push_back({whole(cells.getColumn(0), "floor.x", -kMaxWhole),
+                           whole(cells.getColumn(1), "floor.y", -kMaxWhole),
                            whole(cells.getColumn(2), "floor.frames")});
     }
     const std::string next = store_->get("next_landmark").value_or("1");
@@ -746,7 +847,7 @@ std::int64_t MapFile::begin_run(const std::string& source, Stamp began) {
   });
 }
 
-void MapFile::write(const LandmarkFrame& frame, const Landmarked& step) {
+void MapFile::write(const LandmarkFrame& frame, const LandmarkUpdate& step) {
   store_->guarded([&] {
     Store& s = *store_;
     try {
@@ -754,71 +855,17 @@ void MapFile::write(const LandmarkFrame& frame, const Landmarked& step) {
       ++s.frames;
       s.latest = frame.stamp;
       const LandmarkMap& map = step.state.map;
-      if (step.state.is_located) s.map_from_odom = step.state.located.map_from_odom;
+      const MapLocation& located = step.state.located;
+      if (step.state.is_located) s.map_from_odom = located.map_from_odom;
       // New landmarks first: observations and looks refer to them.
       for (auto l = map.list.rbegin(); l != map.list.rend() && !s.stored.contains(l->id); ++l) {
         s.store_landmark(*l);
         s.stored[l->id] = stored_of(*l);
       }
-      if (frame.is_keyframe && !frame.is_lost && step.state.is_located) {
-        SQLite::Statement put(*s.database, "INSERT OR REPLACE INTO pose VALUES(?,?,?,?,?,?,?,?,?,?)");
-        put.bind(1, s.run);
-        put.bind(2, frame.stamp.ns);
-        const auto numbers = numbers_of(step.state.located.map_from_odom * frame.odom_from_camera);
-        for (std::size_t i = 0; i < numbers.size(); ++i) put.bind(static_cast<int>(i) + 3, numbers[i]);
-        bind_numbers(put, 10, packed(camera_covariance(step.state.located, frame.pose_covariance)));
-        put.exec();
-      }
-      for (const LandmarkEvent& event : step.events) {
-        SQLite::Statement put(
-            *s.database,
-            "INSERT INTO event(run, stamp_ns, kind, landmark, x, y, z, dx, dy, dz, probability, "
-            "frames) VALUES(?,?,?,?,?,?,?,?,?,?,?,?)");
-        int i = 0;
-        put.bind(++i, s.run);
-        put.bind(++i, event.stamp.ns);
-        put.bind(++i, choice_name(event.kind, kLandmarkEventKinds));
-        put.bind(++i, number(event.landmark));
-        for (const double v : {event.position_m.x, event.position_m.y, event.position_m.z, event.moved_by_m.x,
-                               event.moved_by_m.y, event.moved_by_m.z, event.probability})
-          put.bind(++i, v);
-        put.bind(++i, nlohmann::json(event.frames).dump());
-        put.exec();
-      }
-      for (const LandmarkOfTrack& seen : step.tracks) {
-        if (is_guessed(frame)) break;  // its positions are guesses, too
-        if (seen.landmark == LandmarkId::none || !s.stored.contains(seen.landmark)) continue;
-        const auto track = std::find_if(frame.tracks->list.begin(), frame.tracks->list.end(),
-                                        [&](const Track& t) { return t.id == seen.track; });
-        if (track == frame.tracks->list.end() || track->object == ObjectId::none) continue;
-        Store::Thinning& thin = s.thinning[seen.landmark];
-        if (thin.met++ % thin.every != 0) continue;
-        if (thin.kept >= kMostObservations) {
-          // Halves the stored observations, and from now on the rate of new ones.
-          SQLite::Statement drop(
-              *s.database,
-              "DELETE FROM observation WHERE landmark=?1 AND run=?2 AND stamp_ns IN (SELECT stamp_ns FROM "
-              "(SELECT stamp_ns, row_number() OVER (ORDER BY stamp_ns) AS n FROM observation WHERE "
-              "landmark=?1 "
-              "AND run=?2) WHERE n % 2 = 0)");
-          drop.bind(1, number(seen.landmark));
-          drop.bind(2, s.run);
-          thin.kept -= drop.exec();
-          thin.every *= 2;
-        }
-        SQLite::Statement put(*s.database, "INSERT OR REPLACE INTO observation VALUES(?,?,?,?,?,?,?,?,?)");
-        const Point3 at = step.state.located.map_from_odom(track->position_m);
-        put.bind(1, s.run);
-        put.bind(2, frame.stamp.ns);
-        put.bind(3, number(seen.landmark));
-        put.bind(4, number(seen.track));
-        put.bind(5, at.x);
-        put.bind(6, at.y);
-        put.bind(7, at.z);
-        bind_numbers(put, 8, rotated(step.state.located.map_from_odom, track->covariance_m2));
-        put.bind(9, static_cast<double>(track->confidence));
-        put.exec();
-        ++thin.kept;
+      if (frame.is_keyframe && !frame.is_lost && step.state.is_located) s.store_pose(frame, located);
+      for (const LandmarkEvent& event : step.events) s.store_event(event);
+      if (!is_guessed(frame)) {  // else its positions are guesses, too
+        for (const LandmarkOfTrack& seen : step.tracks) s.store_observation(seen, frame, located);
       }
       if (++s.since_commit >= kFramesPerTransaction ||
           seconds_between(s.committed, s.latest) >= kSecondsPerTransaction)

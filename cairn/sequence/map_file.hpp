@@ -85,7 +85,7 @@ class MapFile {
   std::int64_t begin_run(const std::string& source, Stamp began);
   /// Stores one frame: its pose if it is a keyframe, its events, its observations unless is_guessed().
   /// Commits every 30 frames or 1 s of stamps.
-  void write(const LandmarkFrame& frame, const Landmarked& step);
+  void write(const LandmarkFrame& frame, const LandmarkUpdate& step);
   /// `map`: its final state.
   void end_run(RunState state, const LandmarkMap& map);
 

@@ -77,10 +77,10 @@ std::optional<Pose> motion_of(const std::array<const FollowedCorner*, 4>& sample
 /// expected motion may have many inliers and still not be the best.
 int rounds_wanted(int inliers, std::size_t n, const OdometryConfig& config) {
   const double clean = std::pow(static_cast<double>(inliers) / static_cast<double>(n), 4.0);
-  constexpr int kLeast = 30;
-  if (clean >= 1) return kLeast;
+  constexpr int kMin = 30;
+  if (clean >= 1) return kMin;
   const double rounds = std::ceil(std::log(1.0 - double(config.confidence)) / std::log1p(-clean));
-  return std::max(kLeast, rounds < config.iterations ? static_cast<int>(rounds) : config.iterations);
+  return std::max(kMin, rounds < config.iterations ? static_cast<int>(rounds) : config.iterations);
 }
 
 /// The motion with the most inliers; the first of equals.
@@ -209,6 +209,25 @@ int mark_inliers(const std::vector<FollowedCorner>& corners, const Pose& pose, c
   return count;
 }
 
+/// Errors common to all corners do not average out: an error of the disparities scales the motion, one of the
+/// positions rotates it.
+void state_covariance(MotionFit& fit, RowMajor6 covariance, const StereoRig& rig) {
+  constexpr double kCommonScale = 0.01;
+  constexpr double kCommon_px = 0.1;
+  const double common_m = kCommonScale * length(fit.now_from_key.translation_m);
+  const double common_rad = kCommon_px / double(rig.focal_px);
+  covariance.diagonal().head<3>().array() += common_m * common_m;
+  covariance.diagonal().tail<3>().array() += common_rad * common_rad;
+  Eigen::Map<RowMajor6>(fit.covariance.data()) = covariance;
+}
+
+bool is_certain(const MotionFit& fit) {
+  const Eigen::Map<const RowMajor6> covariance(fit.covariance.data());
+  const double sigma_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  const double sigma_rad = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  return sigma_m <= kMaxSigma_m && sigma_rad <= kMaxSigma_rad;
+}
+
 }  // namespace
 
 MotionFit fit_motion(const std::vector<FollowedCorner>& corners, const StereoRig& rig, const Pose& start,
@@ -254,23 +273,12 @@ MotionFit fit_motion(const std::vector<FollowedCorner>& corners, const StereoRig
   fit.now_from_key = pose;
   fit.chi2_per_dof = normal.dof > 0 ? normal.chi2 / normal.dof : 0.0;
   const Eigen::LLT<Matrix6> factors(normal.information);
-  if (factors.info() != Eigen::Success) {
-    fit.refusal = MotionRefusal::degenerate;
-    return fit;
+  const bool is_regular = factors.info() == Eigen::Success;
+  if (is_regular) {
+    const RowMajor6 covariance = std::max(1.0, fit.chi2_per_dof) * factors.solve(Matrix6::Identity()).eval();
+    state_covariance(fit, covariance, rig);
   }
-  RowMajor6 covariance = std::max(1.0, fit.chi2_per_dof) * factors.solve(Matrix6::Identity()).eval();
-  // Errors common to all corners do not average out: an error of the disparities scales the motion, one of
-  // the positions rotates it.
-  constexpr double kCommonScale = 0.01;
-  constexpr double kCommon_px = 0.1;
-  const double common_m = kCommonScale * length(pose.translation_m);
-  const double common_rad = kCommon_px / double(rig.focal_px);
-  covariance.diagonal().head<3>().array() += common_m * common_m;
-  covariance.diagonal().tail<3>().array() += common_rad * common_rad;
-  Eigen::Map<RowMajor6>(fit.covariance.data()) = covariance;
-  const double sigma_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-  const double sigma_rad = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
-  if (!(sigma_m <= kMaxSigma_m) || !(sigma_rad <= kMaxSigma_rad)) fit.refusal = MotionRefusal::degenerate;
+  if (!is_regular || !is_certain(fit)) fit.refusal = MotionRefusal::degenerate;
   return fit;
 }
 

@@ -146,8 +146,8 @@ double disparity_at(View<const float> disparity_px, int x, int y) {
       if (!std::isnan(d)) found[count++] = d;
     }
   }
-  constexpr std::size_t kLeast = 5;
-  if (count < kLeast) return std::numeric_limits<double>::quiet_NaN();
+  constexpr std::size_t kMin = 5;
+  if (count < kMin) return std::numeric_limits<double>::quiet_NaN();
   const auto middle = found.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(found.begin(), middle, found.begin() + static_cast<std::ptrdiff_t>(count));
   return *middle;
@@ -186,8 +186,8 @@ void find_corners(Keyframe& frame, View<const Gray> left, const DisparityMap& di
   for (const cv::Point2f& at : found) {
     const double d = disparity_at(disparity.disparity_px, static_cast<int>(at.x), static_cast<int>(at.y)) +
                      double(rig.doffs_px);
-    constexpr double kLeast_px = 0.1;
-    if (!(d >= kLeast_px)) continue;
+    constexpr double kMin_px = 0.1;
+    if (!(d >= kMin_px)) continue;
     const double z = fb / d;
     frame.corners.push_back({{(double(at.x) - double(rig.cx_px)) * z / double(rig.focal_px),
                               (double(at.y) - double(rig.cy_px)) * z / double(rig.focal_px), z},
@@ -256,13 +256,13 @@ std::vector<FollowedCorner> follow(const Keyframe& key, const Keyframe& now, con
 /// The rotation that best aligns the small images, whatever their brightness: the shift with the least mean
 /// absolute difference (small blurry images, Klein and Murray, ECCV 2008; here all shifts are tried).
 Pose guess_turn(const cv::Mat& before, const cv::Mat& now, cv::Size full, const StereoRig& rig) {
-  constexpr int kMost_x = 24;
-  constexpr int kMost_y = 8;
+  constexpr int kMax_x = 24;
+  constexpr int kMax_y = 8;
   double least = std::numeric_limits<double>::infinity();
   int best_x = 0;
   int best_y = 0;
-  for (int dy = -kMost_y; dy <= kMost_y; ++dy) {
-    for (int dx = -kMost_x; dx <= kMost_x; ++dx) {
+  for (int dy = -kMax_y; dy <= kMax_y; ++dy) {
+    for (int dx = -kMax_x; dx <= kMax_x; ++dx) {
       const cv::Rect in_now = cv::Rect(dx, dy, before.cols, before.rows) & cv::Rect(0, 0, now.cols, now.rows);
       if (in_now.width < before.cols / 3 || in_now.height < before.rows / 2) continue;
       double sum_a = 0;
@@ -448,10 +448,9 @@ bool is_usable(const StereoRig& rig) {
 }
 
 bool is_usable(const PresentFrame& present) {
-  constexpr int kLeast_px = 16;
+  constexpr int kMin_px = 16;
   const Size size = present.left.size();
-  return size.width >= kLeast_px && size.height >= kLeast_px &&
-         present.disparity.disparity_px.size() == size &&
+  return size.width >= kMin_px && size.height >= kMin_px && present.disparity.disparity_px.size() == size &&
          (present.confidence.empty() || present.confidence.size() == size) &&
          (present.moving.empty() || present.moving.size() == size);
 }
@@ -466,16 +465,16 @@ std::shared_ptr<const Keyframe> as_keyframe(std::shared_ptr<Keyframe> frame, con
 
 /// The best attempt at the motion from the keyframe or, failing that, from the spare one, which then replaces
 /// it in `state`.
-struct Measured {
+struct BestAttempt {
   Attempt attempt;
   bool by_spare = false;
 };
-Measured measure(const OdometryState& before, OdometryState& state, const Keyframe* now,
-                 const Pose& expected_step, const PresentFrame& present) {
+BestAttempt measure(const OdometryState& before, OdometryState& state, const Keyframe* now,
+                    const Pose& expected_step, const PresentFrame& present) {
   const auto can_follow = [&](const PlacedKeyframe& key) {
     return now != nullptr && key.frame && key.frame->size == now->size;
   };
-  Measured best;
+  BestAttempt best;
   best.attempt.fit.refusal = MotionRefusal::few_points;
   if (can_follow(before.key)) best.attempt = motion_from(before.key, before, *now, expected_step, present);
   if (best.attempt.fit.refusal == MotionRefusal::none || !can_follow(before.spare)) return best;
@@ -556,7 +555,7 @@ void move_by_guess(const Pose& expected_step, const std::optional<MotionPrior>& 
 
 /// Makes the present frame the keyframe if the motion since the last one is large or poorly supported, or, after
 /// a refusal, the spare one.
-void choose_keyframe(const std::shared_ptr<Keyframe>& now, const Measured& measured,
+void choose_keyframe(const std::shared_ptr<Keyframe>& now, const BestAttempt& measured,
                      const PresentFrame& present, OdometryState& state, Motion& motion) {
   const MotionFit& fit = measured.attempt.fit;
   const OdometryConfig& config = present.config;
@@ -619,10 +618,9 @@ OdometryState after_gap(OdometryState state) {
   return state;
 }
 
-OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left,
-                              const DisparityMap& disparity, View<const float> confidence,
-                              View<const std::uint8_t> moving, const StereoRig& rig,
+OdometryStep advance_odometry(const OdometryState& before, const OdometryFrame& frame, const StereoRig& rig,
                               const std::optional<MotionPrior>& given, const OdometryConfig& config) {
+  const auto& [left, disparity, confidence, moving] = frame;
   const PresentFrame present{left, disparity, confidence, moving, rig, config};
   const std::optional<MotionPrior> prior = given && is_usable(*given) ? given : std::nullopt;
   OdometryStep step{before, {}};
@@ -653,7 +651,7 @@ OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left
   if (prior && prior->kind == PriorKind::gyroscope) expected_step.rotation = prior->now_from_before.rotation;
 
   state.coherent_in_a_row = 0;
-  Measured measured = measure(before, state, now.get(), expected_step, present);
+  BestAttempt measured = measure(before, state, now.get(), expected_step, present);
   const MotionFit& fit = measured.attempt.fit;
   motion.followed = static_cast<int>(measured.attempt.corners.size());
   motion.inliers = fit.inliers;

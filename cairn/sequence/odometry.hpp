@@ -146,14 +146,19 @@ Covariance6 covariance_since_key(const OdometryState& state);
 /// found again or wheels report, the pose then has standard deviations of 1 m and 30° per axis.
 OdometryState after_gap(OdometryState state);
 
-/// Estimates the camera motion up to this frame, and returns the state for the next one. `confidence`: of the
-/// disparities, may be empty; `moving`: 255 on moving objects, may be empty. Corners by Shi and Tomasi
-/// (1994), tracked by pyramidal Lucas-Kanade (Bouguet 2000) from the keyframe; hypotheses by
+/// A frame as odometry uses it. Borrows it.
+struct OdometryFrame {
+  View<const Gray> left;
+  const DisparityMap& disparity;
+  View<const float> confidence = {};     // of the disparities; may be empty
+  View<const std::uint8_t> moving = {};  // 255 on moving objects; may be empty
+};
+
+/// Estimates the camera motion up to this frame, and returns the state for the next one. Corners by Shi and
+/// Tomasi (1994), tracked by pyramidal Lucas-Kanade (Bouguet 2000) from the keyframe; hypotheses by
 /// perspective-3-points in RANSAC with a fixed seed; refined by Gauss-Newton over (u, v, d).
 /// (docs/stages/odometry.md)
-OdometryStep advance_odometry(const OdometryState& before, View<const Gray> left,
-                              const DisparityMap& disparity, View<const float> confidence,
-                              View<const std::uint8_t> moving, const StereoRig& rig,
+OdometryStep advance_odometry(const OdometryState& before, const OdometryFrame& frame, const StereoRig& rig,
                               const std::optional<MotionPrior>& given, const OdometryConfig& config);
 
 }  // namespace cairn

@@ -13,7 +13,7 @@ namespace cairn {
 using landmarks::matrix;
 using landmarks::Matrix3;
 using landmarks::Matrix4;
-using landmarks::Placed;
+using landmarks::Placement;
 using landmarks::point;
 using landmarks::Pull;
 using landmarks::squared_distance;
@@ -27,7 +27,7 @@ Pose turned(double yaw, Point3 translation) {
   return {{c, -s, 0, s, c, 0, 0, 0, 1}, translation};
 }
 
-Placed place(const Candidate& candidate, const Located& located) {
+Placement place(const Candidate& candidate, const MapLocation& located) {
   const Eigen::Vector3d p = vector(located.map_from_odom(candidate.position_m));
   const Eigen::Vector3d camera = vector(located.map_from_odom(located.camera_in_odom_m));
   Eigen::Matrix<double, 3, 4> j = Eigen::Matrix<double, 3, 4>::Zero();
@@ -38,7 +38,7 @@ Placed place(const Candidate& candidate, const Located& located) {
                  j * matrix(located.covariance) * j.transpose()};
 }
 
-Located corrected(const Located& located, const std::vector<Pull>& pulls) {
+MapLocation corrected(const MapLocation& located, const std::vector<Pull>& pulls) {
   constexpr int kIterations = 6;
   constexpr double kHuber = 2;
   const Eigen::Vector3d camera = vector(located.map_from_odom(located.camera_in_odom_m));
@@ -100,7 +100,7 @@ struct CompatiblePair {
   double score = 0;
 };
 
-constexpr std::size_t kMostAllowed = 300;
+constexpr std::size_t kMaxAllowed = 300;
 
 std::vector<CompatiblePair> allowed_pairs(const LandmarkMap& map, const std::vector<Candidate>& candidates,
                                           const LandmarksConfig& config) {
@@ -112,10 +112,10 @@ std::vector<CompatiblePair> allowed_pairs(const LandmarkMap& map, const std::vec
       if (score >= static_cast<double>(config.min_score)) pairs.push_back({c, l, score});
     }
   }
-  if (pairs.size() > kMostAllowed) {
+  if (pairs.size() > kMaxAllowed) {
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const CompatiblePair& a, const CompatiblePair& b) { return a.score > b.score; });
-    pairs.resize(kMostAllowed);
+    pairs.resize(kMaxAllowed);
   }
   return pairs;
 }
@@ -227,7 +227,7 @@ bool is_same_place(const Pose& a, const Pose& b, Point3 where) {
 }
 
 /// Whether a pose in the map is within the 95 % region of a guess.
-bool suits(const Pose& map_from_odom, const Located& guess) {
+bool suits(const Pose& map_from_odom, const MapLocation& guess) {
   constexpr double kChi2Of4At95 = 9.488;
   const Pose apart = map_from_odom * inverse(guess.map_from_odom);
   Eigen::Vector4d off;
@@ -262,7 +262,7 @@ bool may_be(const Candidate& candidate, const Landmark& landmark) {
 }
 
 Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                      const Located& located, const std::vector<LandmarkId>& taken,
+                      const MapLocation& located, const std::vector<LandmarkId>& taken,
                       const LandmarksConfig& config) {
   constexpr double kReach_m = 3;   // a quick test, and the largest distance that a gate should allow
   constexpr double kColours = 20;  // squared distance added for a colour similarity of 0
@@ -279,7 +279,7 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
   };
   std::vector<PairCost> offers;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const Placed seen = landmarks::place(candidates[c], located);
+    const Placement seen = landmarks::place(candidates[c], located);
     for (std::size_t l = 0; l < map.list.size(); ++l) {
       const Landmark& landmark = map.list[l];
       const Eigen::Vector3d difference = seen.position_m - vector(landmark.position_m);
@@ -310,26 +310,16 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
   return result;
 }
 
-Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                     const LandmarksConfig& config, const std::optional<Located>& guess) {
-  Recognition result;
-  const auto enough = static_cast<std::size_t>(config.relocation_pairs);
-  // Two at least: one determines no direction.
-  const std::size_t enough_near =
-      guess ? std::min(enough, static_cast<std::size_t>(std::max(2, config.min_pairs))) : enough;
-  if (candidates.size() < enough_near) {
-    result.refusal = RecognitionRefusal::no_candidates;
-    return result;
-  }
-  const std::vector<CompatiblePair> pairs = allowed_pairs(map, candidates, config);
-  // χ² with 3 degrees of freedom, 0.95. Losing a correct pair costs little; a moved object distorts the pose.
-  constexpr double kTight = 7.81;
-  const double gate = std::min(static_cast<double>(config.gate), kTight);
+namespace {
+
+/// The distinct places where the candidates may be, each with its best constellation. Each two pairs with consistent
+/// distances give a pose, which all pairs consistent with it then refine.
+std::vector<Constellation> constellations_of(const std::vector<CompatiblePair>& pairs,
+                                             const std::vector<Candidate>& candidates, const LandmarkMap& map,
+                                             double gate) {
   Point3 middle;
   for (const Candidate& candidate : candidates)
     middle = middle + (1.0 / static_cast<double>(candidates.size())) * candidate.position_m;
-
-  // Each two pairs with consistent distances give a pose, which all pairs consistent with it then refine.
   constexpr double kSeedSlack = 2;    // for the position errors of the seeds
   std::vector<Constellation> places;  // distinct places, the best constellation of each
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -354,6 +344,27 @@ Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candi
       }
     }
   }
+  return places;
+}
+
+}  // namespace
+
+Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
+                     const LandmarksConfig& config, const std::optional<MapLocation>& guess) {
+  Recognition result;
+  const auto enough = static_cast<std::size_t>(config.relocation_pairs);
+  // Two at least: one determines no direction.
+  const std::size_t enough_near =
+      guess ? std::min(enough, static_cast<std::size_t>(std::max(2, config.min_pairs))) : enough;
+  if (candidates.size() < enough_near) {
+    result.refusal = RecognitionRefusal::no_candidates;
+    return result;
+  }
+  const std::vector<CompatiblePair> pairs = allowed_pairs(map, candidates, config);
+  // χ² with 3 degrees of freedom, 0.95. Losing a correct pair costs little; a moved object distorts the pose.
+  constexpr double kTight = 7.81;
+  const double gate = std::min(static_cast<double>(config.gate), kTight);
+  std::vector<Constellation> places = constellations_of(pairs, candidates, map, gate);
   std::erase_if(places, [&](const Constellation& place) {
     const bool is_near = guess && suits(place.map_from_odom, *guess);
     return place.pairs.size() < (is_near ? enough_near : enough);
@@ -426,8 +437,8 @@ void add_looks(Landmark& known, const std::vector<LandmarkLook>& others) {
   }
 }
 
-Merged unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found, const Pose& pose) {
-  Merged merged;
+MapMerge unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found, const Pose& pose) {
+  MapMerge merged;
   merged.map_from_other = pose;
   merged.pairs = found.pairs;
   merged.map = std::move(map);
@@ -468,8 +479,8 @@ Merged unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found
 
 }  // namespace
 
-Merged merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
-             const LandmarksConfig& config) {
+MapMerge merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
+               const LandmarksConfig& config) {
   const std::vector<Candidate> candidates = candidates_of(other);
   const Recognition found = map_from_other ? recognise(map, candidates, {*map_from_other, {}, {}}, {}, config)
                                            : relocate(map, candidates, config);
@@ -478,7 +489,7 @@ Merged merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose
   return {std::move(map), found.pairs, std::nullopt, found.refusal};
 }
 
-Merged merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config) {
+MapMerge merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config) {
   std::int64_t latest = 0;
   for (const Landmark& ours : map.list) latest = std::max(latest, ours.run);
   LandmarkMap fresh;
@@ -503,7 +514,7 @@ Merged merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksCo
     ours->name = name;
   }
   const Recognition found = recognise(map, candidates_of(fresh), {Pose{}, {}, {}}, shared, config);
-  Merged merged = unite(std::move(map), fresh, found, Pose{});
+  MapMerge merged = unite(std::move(map), fresh, found, Pose{});
   merged.pairs.insert(merged.pairs.begin(), pairs.begin(), pairs.end());
   return merged;
 }

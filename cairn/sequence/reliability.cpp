@@ -30,7 +30,7 @@ std::optional<float> known(double share) {
 
 // ---- stereo, photometric ----
 
-void judge_pair(const Frame& frame, const Evidence& evidence, Witnesses& seen) {
+void judge_pair(const Frame& frame, const ReliabilityInputs& evidence, Witnesses& seen) {
   if (evidence.pair.right().empty() || evidence.best_right.empty()) return;
   const View<const Gray> left = evidence.pair.left();
   Image<Gray> moved;
@@ -58,79 +58,97 @@ void judge_pair(const Frame& frame, const Evidence& evidence, Witnesses& seen) {
 
 // ---- temporal ----
 
-/// IoU of the tracks predicted to be in view with the tracked objects, over the pixels that have a disparity.
-std::optional<float> temporal_of(const Step& step, const Warped& warped) {
+/// Predicted tracks and objects of this frame, and the pixels with a disparity that they have in common.
+struct Overlay {
+  std::vector<TrackId> rows;        // tracks that are expected in view, ascending
+  std::vector<double> sure_before;  // their confidence
+  std::vector<bool> counts;         // of each object: belongs to a track
+  std::vector<int> common;          // px, by row and column
+  std::vector<int> expected;        // px of each row
+  std::vector<int> found;           // px of each column
+};
+
+Overlay overlay_of(const TrackedFrame& step, const MaskPrediction& predicted) {
   constexpr float kInView = 0.5F;
-  constexpr int kFewestPixels = 16;
-  if (step.index == 0 || step.is_lost) return std::nullopt;
+  constexpr int kMinPixels = 16;
   const Objects& objects = step.frame.objects;
-  std::vector<TrackId> rows;
-  std::vector<double> sure_before;
-  for (const Warped::Mask& mask : warped.masks) {
+  Overlay overlay;
+  for (const MaskPrediction::Mask& mask : predicted.masks) {
     const auto track = std::ranges::find(step.tracks.list, mask.track, &Track::id);
     const bool was_seen = track != step.tracks.list.end() && (track->recent >> 1U & 1U) != 0;
-    if (!was_seen || mask.in_view < kInView || mask.area < kFewestPixels) continue;
-    rows.push_back(mask.track);
-    sure_before.push_back(double{track->confidence});
+    if (!was_seen || mask.in_view < kInView || mask.area < kMinPixels) continue;
+    overlay.rows.push_back(mask.track);
+    overlay.sure_before.push_back(double{track->confidence});
   }
   // Objects too uncertain to start a track are never predicted, so they do not count as unexpected.
   const std::size_t columns = objects.list.size();
-  std::vector<bool> counts(columns, false);
+  overlay.counts.assign(columns, false);
   for (const Track& track : step.tracks.list) {
-    if (track.object != ObjectId::none) counts[slot(number(track.object)) - 1] = true;
-    for (const ObjectId part : track.parts) counts[slot(number(part)) - 1] = true;
+    if (track.object != ObjectId::none) overlay.counts[slot(number(track.object)) - 1] = true;
+    for (const ObjectId part : track.parts) overlay.counts[slot(number(part)) - 1] = true;
   }
-  std::vector<int> common(rows.size() * columns, 0);
-  std::vector<int> expected(rows.size(), 0);
-  std::vector<int> found(columns, 0);
+  overlay.common.assign(overlay.rows.size() * columns, 0);
+  overlay.expected.assign(overlay.rows.size(), 0);
+  overlay.found.assign(columns, 0);
   for (int y = 0; y < objects.labels.height(); ++y) {
     const ObjectId* const labels = objects.labels.row(y);
-    const TrackId* const ids = warped.ids.row(y);
+    const TrackId* const ids = predicted.ids.row(y);
     const float* const d = step.frame.disparity.disparity_px.row(y);
     for (int x = 0; x < objects.labels.width(); ++x) {
       if (std::isnan(d[x]) || (labels[x] == ObjectId::none && ids[x] == TrackId::none)) continue;
-      const auto row = std::ranges::lower_bound(rows, ids[x]);
-      const bool has_row = ids[x] != TrackId::none && row != rows.end() && *row == ids[x];
-      const auto at = static_cast<std::size_t>(row - rows.begin());
-      if (has_row) ++expected[at];
+      const auto row = std::ranges::lower_bound(overlay.rows, ids[x]);
+      const bool has_row = ids[x] != TrackId::none && row != overlay.rows.end() && *row == ids[x];
+      const auto at = static_cast<std::size_t>(row - overlay.rows.begin());
+      if (has_row) ++overlay.expected[at];
       if (labels[x] == ObjectId::none) continue;
       const std::size_t column = slot(number(labels[x])) - 1;
-      ++found[column];
-      if (has_row) ++common[at * columns + column];
+      ++overlay.found[column];
+      if (has_row) ++overlay.common[at * columns + column];
     }
   }
+  return overlay;
+}
+
+/// IoU of the tracks predicted to be in view with the tracked objects, over the pixels that have a disparity.
+std::optional<float> temporal_of(const TrackedFrame& step, const MaskPrediction& predicted) {
+  if (step.index == 0 || step.is_lost) return std::nullopt;
+  const Objects& objects = step.frame.objects;
+  const Overlay overlay = overlay_of(step, predicted);
+  const std::size_t columns = objects.list.size();
   struct Pair {
     double iou;
     std::size_t row, column;
   };
   std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < overlay.rows.size(); ++i) {
     for (std::size_t j = 0; j < columns; ++j) {
-      const int both = common[i * columns + j];
-      if (both > 0 && counts[j])
-        pairs.push_back({static_cast<double>(both) / (expected[i] + found[j] - both), i, j});
+      const int both = overlay.common[i * columns + j];
+      if (both > 0 && overlay.counts[j])
+        pairs.push_back({static_cast<double>(both) / (overlay.expected[i] + overlay.found[j] - both), i, j});
     }
   }
   // Best pair first; ties by track, then by object.
   std::ranges::stable_sort(pairs, std::ranges::greater{}, &Pair::iou);
-  std::vector<bool> row_taken(rows.size(), false);
+  std::vector<bool> row_taken(overlay.rows.size(), false);
   std::vector<bool> column_taken(columns, false);
   double agreed = 0;
   for (const Pair& pair : pairs) {
     if (row_taken[pair.row] || column_taken[pair.column]) continue;
     row_taken[pair.row] = column_taken[pair.column] = true;
-    agreed += pair.iou * std::min(sure_before[pair.row], double{objects.list[pair.column].confidence});
+    agreed +=
+        pair.iou * std::min(overlay.sure_before[pair.row], double{objects.list[pair.column].confidence});
   }
   double before = 0;
-  for (const double sure : sure_before) before += sure;
+  for (const double sure : overlay.sure_before) before += sure;
   double now = 0;
-  for (std::size_t j = 0; j < columns; ++j) now += counts[j] ? double{objects.list[j].confidence} : 0.0;
+  for (std::size_t j = 0; j < columns; ++j)
+    now += overlay.counts[j] ? double{objects.list[j].confidence} : 0.0;
   return known(agreed / std::max(before, now));
 }
 
 // ---- floor ----
 
-std::optional<FloorInCamera> floor_of_frame(const Step& step, const std::optional<StereoRig>& rig) {
+std::optional<FloorInCamera> floor_of_frame(const TrackedFrame& step, const std::optional<StereoRig>& rig) {
   const auto floor = floor_frame(step.frame.ground, rig);
   if (!floor) return std::nullopt;
   return FloorInCamera{{double{floor->up.x}, double{floor->up.y}, double{floor->up.z}},
@@ -161,7 +179,7 @@ std::optional<float> floor_agreement(const std::optional<FloorInCamera>& expecte
 
 // ---- odometry ----
 
-std::optional<float> odometry_of(const Step& step) {
+std::optional<float> odometry_of(const TrackedFrame& step) {
   const MotionRefusal refusal = step.motion.refusal;
   if (step.index == 0 || refusal == MotionRefusal::off || refusal == MotionRefusal::no_rig)
     return std::nullopt;
@@ -171,8 +189,8 @@ std::optional<float> odometry_of(const Step& step) {
 
 // ---- scan ----
 
-std::optional<float> scan_of(const Step& step, const LaserScan& scan, const StereoRig& rig) {
-  constexpr int kFewestBeams = 10;
+std::optional<float> scan_of(const TrackedFrame& step, const LaserScan& scan, const StereoRig& rig) {
+  constexpr int kMinBeams = 10;
   constexpr float kAgreePx = 2;
   const Pose from_level = camera_from_level(step.map_from_camera);
   const View<const float> disparity = step.frame.disparity.disparity_px;
@@ -201,7 +219,7 @@ std::optional<float> scan_of(const Step& step, const LaserScan& scan, const Ster
     looked_at += is_known ? 1 : 0;
     agreeing += agrees ? 1 : 0;
   }
-  if (looked_at < kFewestBeams) return std::nullopt;
+  if (looked_at < kMinBeams) return std::nullopt;
   return known(static_cast<double>(agreeing) / looked_at);
 }
 
@@ -212,7 +230,7 @@ constexpr float kFlatPx = 1.05F;  // three standard deviations of a disparity
 
 /// The plane through an object's disparities; nullopt if they are few or collinear.
 std::optional<GroundPlane> plane_of(const Frame& frame, const Object& object) {
-  constexpr double kFewest = 16;
+  constexpr double kMin = 16;
   const Rect box = object.box_px;
   PlaneFit fit(box.x + box.width / 2.0, box.y + box.height / 2.0);
   for (int y = box.y; y < box.y + box.height; y += kEveryPixel) {
@@ -221,7 +239,7 @@ std::optional<GroundPlane> plane_of(const Frame& frame, const Object& object) {
       if (frame.objects.labels(x, y) == object.id && !std::isnan(d)) fit.add(x, y, double{d});
     }
   }
-  return fit.count() < kFewest ? std::nullopt : fit.solve();
+  return fit.count() < kMin ? std::nullopt : fit.solve();
 }
 
 bool is_wall(const Frame& frame, const Object& object) {
@@ -248,7 +266,7 @@ bool is_wall(const Frame& frame, const Object& object) {
 
 }  // namespace
 
-float steadiness(const Step& step, float temporal) {
+float steadiness(const TrackedFrame& step, float temporal) {
   float sure = 0;
   for (const Track& track : step.tracks.list) {
     if (track.object == ObjectId::none || track.state == TrackState::tentative) continue;
@@ -258,8 +276,8 @@ float steadiness(const Step& step, float temporal) {
   return temporal * sure;
 }
 
-Reliability judge(const Step& step, const Warped& warped, const Evidence& evidence,
-                  const Reliability& before) {
+Reliability assess_reliability(const TrackedFrame& step, const MaskPrediction& warped,
+                               const ReliabilityInputs& evidence, const Reliability& before) {
   Reliability judged;
   Witnesses& seen = judged.witnesses;
   judge_pair(step.frame, evidence, seen);
@@ -282,7 +300,7 @@ Reliability judge(const Step& step, const Warped& warped, const Evidence& eviden
     const std::optional<float> value = seen.*witness.value;
     if (!value) continue;
     ++count;
-    logarithms += std::log(double{std::max(*value, kLeastWitness)});
+    logarithms += std::log(double{std::max(*value, kMinWitness)});
     if (*value < least) {
       least = *value;
       judged.weakest = std::string(witness.name);

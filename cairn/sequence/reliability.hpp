@@ -14,7 +14,7 @@
 
 namespace cairn {
 
-struct Step;
+struct TrackedFrame;
 
 /// The indicators of the reliability of a frame, each 0 … 1 or unknown. (docs/stages/reliability.md)
 struct Witnesses {
@@ -64,10 +64,10 @@ struct Reliability {
 inline constexpr float kUnreliable = 0.5F;
 inline constexpr int kUnreliableFrames = 10;
 /// Lower limit of a witness, so that a single zero pulls five others of 1 below kUnreliable.
-inline constexpr float kLeastWitness = 0.01F;
+inline constexpr float kMinWitness = 0.01F;
 
 /// The inputs of judge() besides the step.
-struct Evidence {
+struct ReliabilityInputs {
   StereoPair pair;
   View<const std::int16_t> best_right;  // see Matches; may be empty
   std::optional<StereoRig> rig;
@@ -77,12 +77,12 @@ struct Evidence {
 
 /// The reliability of a frame from its own data. `warped`: the tracks as predicted; `before`: the result of
 /// the frame before. (docs/stages/reliability.md)
-Reliability judge(const Step& step, const Warped& warped, const Evidence& evidence,
-                  const Reliability& before);
+Reliability assess_reliability(const TrackedFrame& step, const MaskPrediction& warped,
+                               const ReliabilityInputs& evidence, const Reliability& before);
 
 /// The number of objects, weighted by confidence and stability: `temporal`, the witness, times the sum of the
 /// confidences of the objects with a confirmed track. A plane of more than 5 % of the image does not count,
 /// since walls are steady too. Compares settings on the same frames, as a mean over ten or more.
-float steadiness(const Step& step, float temporal);
+float steadiness(const TrackedFrame& step, float temporal);
 
 }  // namespace cairn

@@ -13,7 +13,7 @@ constexpr float kWholeFit = 0.8F;
 
 /// For each node and track: number of pixels of the node where the track is predicted.
 std::vector<std::int32_t> expected_in(const MergeTree& tree, const Superpixels& superpixels,
-                                      const Warped& warped, std::size_t tracks,
+                                      const MaskPrediction& warped, std::size_t tracks,
                                       const std::vector<TrackId>& ids) {
   std::vector<std::int32_t> expected(tree.nodes.size() * tracks);
   TrackId last = TrackId::none;
@@ -40,8 +40,8 @@ std::vector<std::int32_t> expected_in(const MergeTree& tree, const Superpixels& 
 }  // namespace
 
 std::vector<float> repaired_scores(const MergeTree& tree, std::vector<float> scores,
-                                   const Superpixels& superpixels, const Warped& warped, const Tracks& tracks,
-                                   const RepairConfig& config) {
+                                   const Superpixels& superpixels, const MaskPrediction& warped,
+                                   const Tracks& tracks, const RepairConfig& config) {
   const std::size_t count = tracks.list.size();
   if (config.method == RepairMethod::off || count == 0) return scores;
   std::vector<TrackId> ids;

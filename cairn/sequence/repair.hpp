@@ -35,8 +35,8 @@ void fields(RepairConfig& c, V&& v) {
 /// ambiguous; but only among the regions of this frame, and a track that the image contradicts for long loses
 /// its confidence. (docs/stages/tracking.md, beyond the paper)
 std::vector<float> repaired_scores(const MergeTree& tree, std::vector<float> scores,
-                                   const Superpixels& superpixels, const Warped& warped, const Tracks& tracks,
-                                   const RepairConfig& config);
+                                   const Superpixels& superpixels, const MaskPrediction& warped,
+                                   const Tracks& tracks, const RepairConfig& config);
 
 /// Objects, followed by candidates: regions outside of the objects with a probability of at least
 /// `low_confidence`. Tracking uses both.

@@ -19,16 +19,16 @@ namespace cairn::io {
 template <class T>
 class StampPairing {
  public:
-  struct Waiting {
+  struct WaitingItem {
     Stamp stamp;
     T value;
   };
   struct Pair {
-    Waiting left;
-    Waiting right;
+    WaitingItem left;
+    WaitingItem right;
   };
   /// Calls `alone` for each image without a partner.
-  StampPairing(double max_skew_ms, std::function<void(std::size_t side, Waiting&&)> alone)
+  StampPairing(double max_skew_ms, std::function<void(std::size_t side, WaitingItem&&)> alone)
       : max_skew_ns_(max_skew_ms * 1e6), alone_(std::move(alone)) {}
 
   void push(std::size_t side, Stamp stamp, T value) { waiting_[side].push_back({stamp, std::move(value)}); }
@@ -40,7 +40,7 @@ class StampPairing {
     push(side, stamp, std::move(value));
     if (waiting_[side].size() > most) leave(side);
   }
-  [[nodiscard]] const std::deque<Waiting>& waiting(std::size_t side) const { return waiting_[side]; }
+  [[nodiscard]] const std::deque<WaitingItem>& waiting(std::size_t side) const { return waiting_[side]; }
 
   /// The next pair; nullopt once a side has ended. `has(side, count)` returns whether that many of a side
   /// wait, after reading on if possible; reading on keeps one waiting image of each side.
@@ -56,7 +56,7 @@ class StampPairing {
 
   /// Reports the longest-waiting image of a side as unpaired.
   void leave(std::size_t side) {
-    Waiting alone = std::move(waiting_[side].front());
+    WaitingItem alone = std::move(waiting_[side].front());
     waiting_[side].pop_front();
     alone_(side, std::move(alone));
   }
@@ -102,8 +102,8 @@ class StampPairing {
   }
 
   double max_skew_ns_;
-  std::function<void(std::size_t, Waiting&&)> alone_;
-  std::array<std::deque<Waiting>, 2> waiting_;
+  std::function<void(std::size_t, WaitingItem&&)> alone_;
+  std::array<std::deque<WaitingItem>, 2> waiting_;
   std::array<std::optional<Stamp>, 2> last_;
 };
 

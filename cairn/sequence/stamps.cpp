@@ -38,14 +38,14 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 /// More than a century before and after 1970; sums and differences fit 64 bits.
-constexpr std::int64_t kFarthestNs = std::numeric_limits<std::int64_t>::max() / 2;
+constexpr std::int64_t kMaxNs = std::numeric_limits<std::int64_t>::max() / 2;
 
 bool is_digits(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), is_digit);
 }
 
 std::optional<Stamp> stamp_of(std::int64_t seconds, std::int64_t ns) {
-  if (std::llabs(seconds) > kFarthestNs / kNsPerSecond) return std::nullopt;
+  if (std::llabs(seconds) > kMaxNs / kNsPerSecond) return std::nullopt;
   return Stamp{seconds * kNsPerSecond + ns};
 }
 
@@ -110,15 +110,14 @@ std::optional<Stamp> date(std::string_view text) {
 std::optional<Stamp> parse_seconds(std::string_view text) {
   if (const std::optional<Stamp> stamp = decimal(text)) return stamp;
   const std::optional<double> seconds = whole<double>(text);
-  if (!seconds ||
-      !(std::abs(*seconds) * static_cast<double>(kNsPerSecond) < static_cast<double>(kFarthestNs)))
+  if (!seconds || !(std::abs(*seconds) * static_cast<double>(kNsPerSecond) < static_cast<double>(kMaxNs)))
     return std::nullopt;
   return Stamp{std::llround(*seconds * static_cast<double>(kNsPerSecond))};
 }
 
 std::optional<Stamp> parse_stamp(std::string_view text) {
   if (const std::optional<std::int64_t> ns = whole<std::int64_t>(text)) {
-    if (*ns > kFarthestNs || *ns < -kFarthestNs) return std::nullopt;
+    if (*ns > kMaxNs || *ns < -kMaxNs) return std::nullopt;
     return Stamp{*ns};
   }
   if (is_digits(text)) return std::nullopt;
@@ -134,7 +133,7 @@ std::string stamp_text(Stamp stamp) {
 }
 
 std::vector<Stamp> load_stamps(const fs::path& path) {
-  const std::string text = read_file(path, kMostLogBytes);
+  const std::string text = read_file(path, kMaxLogBytes);
   std::vector<Stamp> stamps;
   // One line with a decimal point means that all are seconds: "5" before "5.1" is not 5 ns.
   const std::vector<TextLine> lines = lines_of(text);
@@ -151,7 +150,7 @@ std::vector<Stamp> load_stamps(const fs::path& path) {
 }
 
 std::vector<NamedStamp> load_named_stamps(const fs::path& path) {
-  const std::string text = read_file(path, kMostLogBytes);
+  const std::string text = read_file(path, kMaxLogBytes);
   std::vector<NamedStamp> stamps;
   for (const TextLine& line : lines_of(text)) {
     const std::vector<std::string_view> fields = fields_of(line.text);
@@ -163,13 +162,13 @@ std::vector<NamedStamp> load_named_stamps(const fs::path& path) {
     }
     std::string file(fields.size() > 1 ? fields[1] : "");
     if (file.empty()) file = std::string(fields.front()) + ".png";
-    stamps.push_back({Stamp{std::clamp(*ns, -kFarthestNs, kFarthestNs)}, std::move(file)});
+    stamps.push_back({Stamp{std::clamp(*ns, -kMaxNs, kMaxNs)}, std::move(file)});
   }
   return stamps;
 }
 
 std::optional<std::vector<FrameStamp>> load_frame_stamps(const fs::path& path) {
-  const std::string text = read_file(path, kMostLogBytes);
+  const std::string text = read_file(path, kMaxLogBytes);
   const std::vector<TextLine> lines = lines_of(text);
   if (lines.empty()) return std::nullopt;
   const std::vector<std::string_view> header = fields_of(lines.front().text);
@@ -240,7 +239,7 @@ void check_rising(std::span<const Stamp> stamps, std::span<const std::string> na
 StampPairs pair_by_stamps(std::span<const Stamp> left, std::span<const Stamp> right, double max_skew_ms) {
   StampPairs found;
   using Pairing = StampPairing<std::size_t>;
-  Pairing pairing(max_skew_ms, [&](std::size_t side, Pairing::Waiting&& alone) {
+  Pairing pairing(max_skew_ms, [&](std::size_t side, Pairing::WaitingItem&& alone) {
     (side == 0 ? found.left_alone : found.right_alone).push_back(alone.value);
   });
   for (std::size_t i = 0; i < left.size(); ++i) pairing.push(0, left[i], i);

@@ -160,7 +160,7 @@ void score_hota(const Sequence& sequence, TrackErrors& errors) {
       }
     }
   }
-  constexpr double kLeast = 1e-10;
+  constexpr double kMin = 1e-10;
   for (std::size_t a = 0; a < kThresholds; ++a) {
     double ass_a = 0;
     double ass_re = 0;
@@ -181,7 +181,7 @@ void score_hota(const Sequence& sequence, TrackErrors& errors) {
     errors.ass_a += ass_a / found / kThresholds;
     errors.ass_re += ass_re / found / kThresholds;
     errors.ass_pr += ass_pr / found / kThresholds;
-    errors.loc_a += std::max(kLeast, similarity[a]) / std::max(kLeast, right[a]) / kThresholds;
+    errors.loc_a += std::max(kMin, similarity[a]) / std::max(kMin, right[a]) / kThresholds;
     errors.hota += std::sqrt(det_a * ass_a / found) / kThresholds;
   }
 }

@@ -55,7 +55,7 @@ using ColourHistogram = std::array<float, 72>;
 float likeness(const ColourHistogram& a, const ColourHistogram& b);
 
 /// One object of one frame, as input of tracking.
-struct Sighting {
+struct Detection {
   ObjectId object = ObjectId::none;
   bool has_place = false;  // whether position, covariance, extent and height are known, in metres
   Point3 position_in_camera_m;
@@ -72,8 +72,8 @@ struct Sighting {
 
 /// The objects of a frame with at least low_confidence, by ObjectId. Without a rig, none has a position.
 /// (docs/stages/tracking.md)
-std::vector<Sighting> sight(const Frame& frame, const LeftImage& left, const std::optional<StereoRig>& rig,
-                            const TrackingConfig& config);
+std::vector<Detection> detect(const Frame& frame, const LeftImage& left, const std::optional<StereoRig>& rig,
+                              const TrackingConfig& config);
 
 enum class TrackState : std::uint8_t { tentative, confirmed, occluded, out_of_view, lost, dead };
 inline constexpr std::array kTrackStates{
@@ -167,30 +167,37 @@ bool is_joined_with(const Overlaps& overlaps, std::size_t track, ObjectId object
 /// The objects that are joined with two or more confirmed tracks, ascending.
 std::vector<ObjectId> joined_objects(const Tracks& tracks, const Overlaps& overlaps);
 
-struct Match {
+struct Assignment {
   TrackId track = TrackId::none;
   ObjectId object = ObjectId::none;
 };
 
 /// The tracks relative to a new keyframe, which has `key_covariance` relative to the one before (0 while it is
 /// the same). In a new segment, earlier sightings are no evidence of movement.
-Tracks tied_to_key(Tracks tracks, const Pose& map_from_camera, const Covariance6& key_covariance,
-                   bool is_new_segment);
+Tracks rebased_to_keyframe(Tracks tracks, const Pose& map_from_camera, const Covariance6& key_covariance,
+                           bool is_new_segment);
+
+/// When and where the camera takes a frame.
+struct CameraAt {
+  Stamp now;
+  Pose map_from_camera;
+  Covariance6 pose_covariance{};  // since the keyframe
+  bool is_lost = false;           // the pose is unknown
+};
 
 /// Assigns objects to tracks: minimum cost (Kuhn 1955) over position, size, appearance and overlap, in two
 /// rounds, objects of high confidence first (Zhang et al. 2022, "ByteTrack"). Ties: the lower track, then the
 /// lower object. A track detected in parts has several matches, the main one first. By track, ascending.
 /// `pose_covariance`: of the pose relative to the keyframe, along the map's axes.
 /// (docs/stages/tracking.md)
-std::vector<Match> associate(const Tracks& tracks, const std::vector<Sighting>& sightings,
-                             const Overlaps& overlaps, const Pose& map_from_camera,
-                             const Covariance6& pose_covariance, Stamp now, const TrackingConfig& config);
+std::vector<Assignment> associate(const Tracks& tracks, const std::vector<Detection>& detections,
+                                  const Overlaps& overlaps, const CameraAt& camera,
+                                  const TrackingConfig& config);
 
 /// The tracks after this frame: matched ones updated, others predicted and aged, new ones started, dead ones
-/// removed. `is_lost`: the camera pose is unknown; all tracks are predicted and none is updated.
-Tracks advance_tracks(Tracks tracks, const std::vector<Sighting>& sightings,
-                      const std::vector<Match>& matches, const Overlaps& overlaps,
-                      const Pose& map_from_camera, const Covariance6& pose_covariance, bool is_lost,
-                      Stamp now, const TrackingConfig& config);
+/// removed. While the camera is lost, all tracks are predicted and none is updated.
+Tracks advance_tracks(Tracks tracks, const std::vector<Detection>& detections,
+                      const std::vector<Assignment>& matches, const Overlaps& overlaps,
+                      const CameraAt& camera, const TrackingConfig& config);
 
 }  // namespace cairn

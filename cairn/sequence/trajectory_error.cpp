@@ -28,14 +28,14 @@ std::size_t nearest(const std::vector<TimedPose>& poses, Stamp stamp) {
   return static_cast<std::size_t>((take_before ? before : after) - poses.begin());
 }
 
-struct Compared {
+struct PosePairs {
   std::vector<Pair> pairs;
   int missing = 0;
 };
 
-Compared pair_up(const std::vector<TimedPose>& estimated, const std::vector<TimedPose>& truth,
-                 double max_skew_s) {
-  Compared all;
+PosePairs pair_up(const std::vector<TimedPose>& estimated, const std::vector<TimedPose>& truth,
+                  double max_skew_s) {
+  PosePairs all;
   if (truth.empty()) return all;
   std::size_t first = 0;
   std::size_t last = 0;
@@ -154,7 +154,7 @@ void errors_of_sub_paths(const std::vector<Pair>& pairs, const std::vector<doubl
 
 TrajectoryError trajectory_error(const std::vector<TimedPose>& estimated, const std::vector<TimedPose>& truth,
                                  const TrajectoryErrorConfig& config) {
-  const Compared compared = pair_up(estimated, truth, config.max_skew_s);
+  const PosePairs compared = pair_up(estimated, truth, config.max_skew_s);
   const std::vector<Pair>& pairs = compared.pairs;
   TrajectoryError error;
   error.compared = static_cast<int>(pairs.size());

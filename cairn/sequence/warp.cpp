@@ -20,7 +20,7 @@ const Track* find(const Tracks& tracks, TrackId id) {
 }
 
 /// Assigns a pixel to a track if two opposite neighbours belong to it.
-void close_gaps(Warped& warped) {
+void close_gaps(MaskPrediction& warped) {
   const Size size = warped.ids.size();
   const auto fill = [&](int x, int y, int dx, int dy) {
     const TrackId id = warped.ids(x - dx, y - dy);
@@ -37,17 +37,18 @@ void close_gaps(Warped& warped) {
 
 }  // namespace
 
-Warped warp(const Remembered& remembered, const Tracks& tracks, const Pose& map_from_camera, Stamp now,
-            const StereoRig& rig, Size image, const Exec& exec) {
-  Warped warped{{}, Image<TrackId>(image, TrackId::none, exec.pool), Image<float>(image, kNan, exec.pool)};
+MaskPrediction warp(const MaskMemory& remembered, const Tracks& tracks, const Pose& map_from_camera,
+                    Stamp now, const StereoRig& rig, Size image, const Exec& exec) {
+  MaskPrediction warped{
+      {}, Image<TrackId>(image, TrackId::none, exec.pool), Image<float>(image, kNan, exec.pool)};
   Image<std::int32_t> covered(image, 0, exec.pool);  // last mask that covered the pixel, counted from 1
   const Pose camera_from_map = inverse(map_from_camera);
   const double focal_baseline = double{rig.focal_px} * double{rig.baseline_m};
-  for (const Remembered::Mask& mask : remembered.masks) {
+  for (const MaskMemory::Mask& mask : remembered.masks) {
     const Track* const track = find(tracks, mask.track);
     if (track == nullptr || mask.points.empty()) continue;
     const Point3 moved = track->is_moving ? seconds_between(mask.seen, now) * track->velocity_m_s : Point3{};
-    Warped::Mask shown{mask.track, 0, 0};
+    MaskPrediction::Mask shown{mask.track, 0, 0};
     int in_view = 0;
     const auto stamp = static_cast<std::int32_t>(warped.masks.size()) + 1;
     for (const SeenPoint& seen : mask.points) {
@@ -73,10 +74,10 @@ Warped warp(const Remembered& remembered, const Tracks& tracks, const Pose& map_
   return warped;
 }
 
-Remembered remember(Remembered before, const Tracks& tracks, const Objects& objects,
+MaskMemory remember(MaskMemory before, const Tracks& tracks, const Objects& objects,
                     const DisparityMap& disparity, const Pose& map_from_camera, Stamp now,
                     const StereoRig& rig) {
-  Remembered after;
+  MaskMemory after;
   after.masks.reserve(tracks.list.size());
   std::vector<std::int32_t> mask_of(objects.list.size() + 1, -1);  // −1 = not remembered from this frame
   auto old = before.masks.begin();
@@ -109,7 +110,7 @@ Remembered remember(Remembered before, const Tracks& tracks, const Objects& obje
   return after;
 }
 
-Overlaps overlaps_of(const Warped& warped, const Tracks& tracks, const Objects& objects,
+Overlaps overlaps_of(const MaskPrediction& warped, const Tracks& tracks, const Objects& objects,
                      const DisparityMap& disparity) {
   const std::size_t count = tracks.list.size();
   Overlaps found;
@@ -123,7 +124,7 @@ Overlaps overlaps_of(const Warped& warped, const Tracks& tracks, const Objects& 
   const auto row_of = [&](TrackId id) {
     return static_cast<std::size_t>(std::ranges::lower_bound(found.tracks, id) - found.tracks.begin());
   };
-  for (const Warped::Mask& mask : warped.masks) {
+  for (const MaskPrediction::Mask& mask : warped.masks) {
     found.in_view[row_of(mask.track)] = mask.in_view;
     found.area[row_of(mask.track)] = mask.area;
   }

@@ -17,7 +17,7 @@ struct SeenPoint {
   Point3 in_map_m;
   float disparity_px = 0;
 };
-struct Remembered {
+struct MaskMemory {
   struct Mask {
     TrackId track = TrackId::none;
     Stamp seen;
@@ -27,7 +27,7 @@ struct Remembered {
 };
 
 /// The predicted appearance of the tracks.
-struct Warped {
+struct MaskPrediction {
   struct Mask {
     TrackId track = TrackId::none;
     float in_view = 0;  // 0 … 1: share of its points inside the image
@@ -40,16 +40,16 @@ struct Warped {
 
 /// Moves the remembered points to the present camera, those of a moving track also by its motion: the nearer
 /// point wins, gaps of one pixel are closed. (docs/stages/tracking.md)
-Warped warp(const Remembered& remembered, const Tracks& tracks, const Pose& map_from_camera, Stamp now,
-            const StereoRig& rig, Size image, const Exec& exec);
+MaskPrediction warp(const MaskMemory& remembered, const Tracks& tracks, const Pose& map_from_camera,
+                    Stamp now, const StereoRig& rig, Size image, const Exec& exec);
 
 /// Replaces the masks of tracks detected in this frame; removes those of ended tracks.
-Remembered remember(Remembered before, const Tracks& tracks, const Objects& objects,
+MaskMemory remember(MaskMemory before, const Tracks& tracks, const Objects& objects,
                     const DisparityMap& disparity, const Pose& map_from_camera, Stamp now,
                     const StereoRig& rig);
 
 /// The overlaps of the objects of the present frame with the predicted tracks.
-Overlaps overlaps_of(const Warped& warped, const Tracks& tracks, const Objects& objects,
+Overlaps overlaps_of(const MaskPrediction& warped, const Tracks& tracks, const Objects& objects,
                      const DisparityMap& disparity);
 
 }  // namespace cairn

@@ -15,7 +15,7 @@ template <class T>
 struct Tag {
   using Lane = T;
 };
-template <class T, std::size_t kMost>
+template <class T, std::size_t kMax>
 using CappedTag = Tag<T>;
 template <class D>
 using Vec = typename D::Lane;

@@ -36,7 +36,7 @@ inline void sum_counts(const HolesAndJumps* columns, int width, int window, Hole
   sum_along(columns, width, window, blocks, sums);
 }
 
-/// 2^t for |t| ≤ kGreatestExponent, with a relative error of 2·10⁻⁷; in arithmetic that is the same on every
+/// 2^t for |t| ≤ kMaxExponent, with a relative error of 2·10⁻⁷; in arithmetic that is the same on every
 /// platform, unlike that of libraries.
 inline float power_of_two(float t) {
   constexpr int kOffset = 64;
@@ -47,13 +47,13 @@ inline float power_of_two(float t) {
   return std::bit_cast<float>((whole + 127) << 23) * fraction;
 }
 
-inline constexpr float kLeastMean = 1e-6F;  // avoids a division by 0 if all costs are 0
-inline constexpr float kGreatestExponent = 30.0F;
+inline constexpr float kMinMean = 1e-6F;  // avoids a division by 0 if all costs are 0
+inline constexpr float kMaxExponent = 30.0F;
 
 inline float logistic(float log_odds) {
   constexpr float kLog2OfE = 1.44269504F;
   // In this order of arguments NaN, of pixels without a match, is clamped too.
-  const float exponent = std::max(-kGreatestExponent, std::min(kGreatestExponent, -kLog2OfE * log_odds));
+  const float exponent = std::max(-kMaxExponent, std::min(kMaxExponent, -kLog2OfE * log_odds));
   return 1.0F / (1.0F + power_of_two(exponent));
 }
 
@@ -62,7 +62,7 @@ inline void judge_confidence(const ConfidenceRow& given, int width, const Confid
   const ConfidenceRow row = given;
   const ConfidenceModel model = fitted;
   for (int x = 0; x < width; ++x) {
-    const float inverse_mean = 1.0F / std::max(row.mean_cost[x], kLeastMean);
+    const float inverse_mean = 1.0F / std::max(row.mean_cost[x], kMinMean);
     const float margin = std::min((row.runner_up[x] - row.cost[x]) * inverse_mean, 1.0F);
     const float cost = std::min(row.cost[x] * inverse_mean, 1.0F);
     const int counts = row.around[x];

@@ -23,9 +23,9 @@ using sparse::refine;
 // Lengths are pixels of the halved images, unless the name says rows or px: then of the full images.
 constexpr float kRivalRatio = 1.25F;  // times the lowest cost: the least in rows more than one away
 constexpr float kAgreeRows = 0.5F;
-constexpr int kLeastPoints = 16;
-constexpr std::size_t kLeastPointsForRoll = 24;
-constexpr std::size_t kMostPoints = 60;
+constexpr int kMinPoints = 16;
+constexpr std::size_t kMinPointsForRoll = 24;
+constexpr std::size_t kMaxPoints = 60;
 constexpr float kCertain = 4.0F;  // standard errors
 
 /// Zero-mean sum of squared differences of two windows (ZSSD), times their area.
@@ -111,7 +111,7 @@ std::optional<Sighting> sight(const Pyramid& pyramid, Point p, const Search& sea
 }
 
 std::vector<Sighting> sight_all(const Pyramid& pyramid, const Search& search, const Exec& exec) {
-  const std::vector<Point> points = sparse::textured_points(pyramid.left_half, kMostPoints, exec);
+  const std::vector<Point> points = sparse::textured_points(pyramid.left_half, kMaxPoints, exec);
   std::vector<std::optional<Sighting>> found(points.size());
   parallel_for(exec, static_cast<int>(points.size()), 16, [&](int first, int last) {
     for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
@@ -189,7 +189,7 @@ Line line_by_squares(const std::vector<Sighting>& all, float middle_px) {
   const double slope = xx > 0 ? xr / xx : 0;
   const double error = xx > 0 ? std::sqrt(std::max(0.0, rr - slope * xr) / (count * xx)) : 0;
   const bool certain =
-      all.size() >= kLeastPointsForRoll && std::abs(slope) > static_cast<double>(kCertain) * error &&
+      all.size() >= kMinPointsForRoll && std::abs(slope) > static_cast<double>(kCertain) * error &&
       std::abs(slope) * static_cast<double>(middle_px) > static_cast<double>(kEpipolarLeastRows);
   if (!certain) return {static_cast<float>(mean_rows), 0, middle_px};
   return {static_cast<float>(mean_rows + slope * (static_cast<double>(middle_px) - mean_x)),
@@ -200,7 +200,7 @@ EpipolarOffset judge(const std::vector<Sighting>& all, float max_rows, int width
   EpipolarOffset offset;
   offset.points = static_cast<int>(all.size());
   offset.outcome = EpipolarOutcome::few_points;
-  if (offset.points < kLeastPoints) return offset;
+  if (offset.points < kMinPoints) return offset;
 
   const float middle_px = 0.5F * static_cast<float>(width - 1);
   Line line = line_by_medians(all, middle_px);
@@ -211,7 +211,7 @@ EpipolarOffset judge(const std::vector<Sighting>& all, float max_rows, int width
   offset.agreeing = static_cast<int>(within(all, line, kAgreeRows).size());
   const float ends = std::abs(line.slope) * middle_px;
   offset.outcome = EpipolarOutcome::no_agreement;
-  if (offset.agreeing < kLeastPoints || 2 * offset.agreeing < offset.points) return offset;
+  if (offset.agreeing < kMinPoints || 2 * offset.agreeing < offset.points) return offset;
   if (std::abs(line.rows) + ends > max_rows + kAgreeRows) return offset;
 
   offset.rows = line.rows;

@@ -62,7 +62,7 @@ struct Narrow {
 /// eight lanes of a tile it belongs to. All terms added to a sum are multiples of eight and leave these bits
 /// unchanged. So the minimum, together with its position among eight lanes, identifies the winner without a
 /// separate index.
-struct Tagged : Narrow {
+struct TaggedCost : Narrow {
   static constexpr int kShift = 3;
   static constexpr int kLargestSum = 8190;
   static constexpr int kLargestDifference = 127;

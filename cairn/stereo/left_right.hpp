@@ -8,19 +8,20 @@
 
 namespace cairn {
 
-enum class LeftRightMethod : std::uint8_t { true_, vote };
-inline constexpr std::array kLeftRightMethods{Choice<LeftRightMethod>{"true", LeftRightMethod::true_},
-                                              Choice<LeftRightMethod>{"vote", LeftRightMethod::vote}};
+enum class LeftRightMethod : std::uint8_t { right_winner, vote };
+inline constexpr std::array kLeftRightMethods{
+    Choice<LeftRightMethod>{"right_winner", LeftRightMethod::right_winner},
+    Choice<LeftRightMethod>{"vote", LeftRightMethod::vote}};
 
 struct LeftRightConfig {
   float max_diff = 1.0F;  // px, 0 … 64, −1 = off; higher keeps slanted surfaces, lower clears edges
-  LeftRightMethod method = LeftRightMethod::true_;  // vote: as in OpenCV
+  LeftRightMethod method = LeftRightMethod::right_winner;  // vote: as in OpenCV
 };
 template <class V>
 void fields(LeftRightConfig& c, V&& v) {
   v("max_diff", c.max_diff, "px", "largest accepted difference of left and right disparity",
     off_or(0.0F, 64.0F));
-  v("method", c.method, "", "reference for the right image: its own winner (true) or OpenCV's votes",
+  v("method", c.method, "", "reference for the right image: its own winner or OpenCV's votes",
     kLeftRightMethods, unless("left_right.max_diff", "-1"));
 }
 

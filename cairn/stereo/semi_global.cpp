@@ -14,11 +14,11 @@ using kernels::SemiGlobalKernels;
 using kernels::SemiGlobalPenalties;
 using kernels::SemiGlobalTask;
 
-constexpr int kLeastColumns = 16;  // least number per thread
+constexpr int kMinColumns = 16;  // least number per thread
 
 std::uint8_t in_cost_units(float penalty) {
-  const auto steps = std::lround(penalty * static_cast<float>(kernels::kGreatestCost));
-  return static_cast<std::uint8_t>(std::clamp<long>(steps, 0, kernels::kGreatestPenalty));
+  const auto steps = std::lround(penalty * static_cast<float>(kernels::kMaxCost));
+  return static_cast<std::uint8_t>(std::clamp<long>(steps, 0, kernels::kMaxPenalty));
 }
 
 SemiGlobalPenalties table_of(const SemiGlobalConfig& config) {
@@ -59,11 +59,11 @@ int rows_at_a_time(const SearchLayout& layout, const Exec& exec) {
 void follow_paths(const SemiGlobalTask& task, const SemiGlobalKernels& run, const Exec& exec) {
   const auto [width, height] = task.left.size();
   parallel_for(exec, height, 16, [&](int first, int last) { run.describe_rows(task, first, last); });
-  parallel_for(exec, width, kLeastColumns, [&](int first, int last) { run.match_down(task, first, last); });
+  parallel_for(exec, width, kMinColumns, [&](int first, int last) { run.match_down(task, first, last); });
   const int rows = rows_at_a_time(task.layout, exec);
   for (int bottom = height; bottom > 0; bottom -= rows) {
     const int top = std::max(0, bottom - rows);
-    parallel_for(exec, width, kLeastColumns,
+    parallel_for(exec, width, kMinColumns,
                  [&](int first, int last) { run.match_up(task, first, last, top, bottom); });
     parallel_for(exec, bottom - top, 1,
                  [&](int first, int last) { run.match_across(task, top + first, top + last); });

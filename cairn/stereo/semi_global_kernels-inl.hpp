@@ -121,7 +121,7 @@ CAIRN_LANES_INLINE std::uint8_t large_penalty(const std::uint8_t* large, Gray a,
 
 /// The L of one pixel of a path, in memory …
 template <class D>
-struct Stored {
+struct MemoryPath {
   D d;
   std::uint8_t* at;
   [[nodiscard]] CAIRN_LANES_INLINE bytes::Vec<D> get(int i) const { return bytes::Load(d, at + i); }
@@ -129,10 +129,18 @@ struct Stored {
 };
 /// … and in a register, if one vector holds all of it.
 template <class D>
-struct Held {
+struct RegisterPath {
   bytes::Vec<D>& all;
   [[nodiscard]] CAIRN_LANES_INLINE bytes::Vec<D> get(int) const { return all; }
   CAIRN_LANES_INLINE void set(int, bytes::Vec<D> along) const { all = along; }
+};
+
+/// From one pixel of a path to the next: the minimum of L there, and the penalties.
+template <class D>
+struct Transition {
+  bytes::Vec<D> least;
+  bytes::Vec<D> small;
+  bytes::Vec<D> large;
 };
 
 /// Advances by one pixel: `along` holds the L of the previous pixel and receives that of this one. `least` is
@@ -140,8 +148,8 @@ struct Held {
 /// are 0. Calls use(i, C, L − C) for each vector.
 template <class D, class Along, class Use>
 CAIRN_LANES_INLINE bytes::Vec<D> go_on(D d, const std::uint8_t* costs, const Along& along,
-                                       bytes::Vec<D> least, bytes::Vec<D> small, bytes::Vec<D> large,
-                                       int lanes, const Use& use) {
+                                       const Transition<D>& by, int lanes, const Use& use) {
+  const auto least = by.least, small = by.small, large = by.large;
   const auto none = bytes::Set(d, kNoLane);
   auto before = none;
   auto here = along.get(0);
@@ -291,8 +299,8 @@ class Descent {
       expect_writes(next_steps + at, lanes);
       average(above + at, here + at, below + at, beyond, lanes, costs + at);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_above[x]));
-      const auto now = go_on(d, costs + at, Stored<D>{d, along + at}, bytes::Set(d, least[x]), small, penalty,
-                             lanes, Keep<D>{d, steps + at});
+      const auto now = go_on(d, costs + at, MemoryPath<D>{d, along + at},
+                             {bytes::Set(d, least[x]), small, penalty}, lanes, Keep<D>{d, steps + at});
       least[x] = bytes::GetLane(now);
     }
   }
@@ -341,8 +349,8 @@ void go_up(const SemiGlobalTask& task, int first, int last, int top, int bottom)
       expect_reads(next_costs + at, lanes);
       expect_writes(next_steps + at, lanes);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_below[x]));
-      const auto now = go_on(d, costs + at, Stored<D>{d, along + at}, bytes::Set(d, least[x]), small, penalty,
-                             lanes, Accumulate<D>{d, steps + at});
+      const auto now = go_on(d, costs + at, MemoryPath<D>{d, along + at},
+                             {bytes::Set(d, least[x]), small, penalty}, lanes, Accumulate<D>{d, steps + at});
       least[x] = bytes::GetLane(now);
     }
   }
@@ -359,7 +367,7 @@ class Crossing {
   static constexpr int kSums = static_cast<int>(lanes::MaxLanes(Sums()));
   static constexpr int kTileBits = 6;
   static constexpr int kTile = 1 << kTileBits;
-  static constexpr std::int16_t kMostSum = 1023;  // four times 54 + 127 are less
+  static constexpr std::int16_t kMaxSum = 1023;  // four times 54 + 127 are less
 
  public:
   explicit Crossing(const SemiGlobalTask& task)
@@ -411,11 +419,11 @@ class Crossing {
       for (int row = 0; row < kRows; ++row) {
         const auto penalty = bytes::Set(d, large_penalty(large, smooth[row][x], smooth[row][from]));
         if constexpr (kOneVector) {
-          least[row] = go_on(d, costs[row] + x * lanes, Held<D>{held[row]}, least[row], small, penalty,
-                             lane_count(d), use(row));
+          least[row] = go_on(d, costs[row] + x * lanes, RegisterPath<D>{held[row]},
+                             {least[row], small, penalty}, lane_count(d), use(row));
         } else {
-          least[row] = go_on(d, costs[row] + x * lanes, Stored<D>{d, along + row * lanes}, least[row], small,
-                             penalty, lanes, use(row));
+          least[row] = go_on(d, costs[row] + x * lanes, MemoryPath<D>{d, along + row * lanes},
+                             {least[row], small, penalty}, lanes, use(row));
         }
       }
     }
@@ -602,7 +610,7 @@ class Crossing {
           tagged.data());
       for (std::size_t i = 0; i < kBlock; ++i) {
         const int number = tagged[i] + 32768;
-        const bool less = number >> kTileBits < std::min<int>(least[i], kMostSum);
+        const bool less = number >> kTileBits < std::min<int>(least[i], kMaxSum);
         least[i] = less ? static_cast<std::int16_t>(number >> kTileBits) : least[i];
         lane[i] = less ? static_cast<std::int16_t>(first + number % kTile) : lane[i];
       }
@@ -613,7 +621,7 @@ class Crossing {
     const Sums d;
     auto least = lanes::Set(d, std::int16_t{32767});
     for (int i = 0; i < std::min(kTile, g_.lanes - first); i += kSums) {
-      const auto capped = lanes::Min(lanes::Load(d, sums + i), lanes::Set(d, kMostSum));
+      const auto capped = lanes::Min(lanes::Load(d, sums + i), lanes::Set(d, kMaxSum));
       const auto number = lanes::CountFrom(d, static_cast<std::int16_t>(i - 32768));
       least = lanes::Min(least, lanes::Add(lanes::ShiftLeft<kTileBits>(capped), number));
     }

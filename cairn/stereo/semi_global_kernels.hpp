@@ -14,9 +14,9 @@
 namespace cairn::kernels {
 
 /// C of a box of nine pixels with all 24 bits different.
-inline constexpr int kGreatestCost = (9 * 24 + 2) / 4;
+inline constexpr int kMaxCost = (9 * 24 + 2) / 4;
 /// The penalties of two paths together fit into a byte.
-inline constexpr int kGreatestPenalty = 127;
+inline constexpr int kMaxPenalty = 127;
 
 /// Number of rows whose horizontal paths are computed concurrently.
 inline constexpr int kRowsAbreast = 2;

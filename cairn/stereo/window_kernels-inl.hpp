@@ -392,8 +392,8 @@ void match_rows(const MatchTask& task, int first, int last) {
   if constexpr (CAIRN_COST == Cost::sad) {
     const int n = pixels_of_window(config);
     const int levels = config.prefilter == Prefilter::xsobel ? 2 * config.prefilter_cap : 255;
-    if (levels <= Tagged::kLargestDifference && n * levels <= Tagged::kLargestSum)
-      return run_band<Tagged>(task, first, last);
+    if (levels <= TaggedCost::kLargestDifference && n * levels <= TaggedCost::kLargestSum)
+      return run_band<TaggedCost>(task, first, last);
     return n * levels <= Narrow::kLargestSum ? run_band<Narrow>(task, first, last)
                                              : run_band<>(task, first, last);
   } else if constexpr (takes_covariance(CAIRN_COST)) {

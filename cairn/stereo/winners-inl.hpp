@@ -101,7 +101,7 @@ struct TileWinners<Wide> {
   [[nodiscard]] Places places() const { return {costs.data(), first_lanes.data()}; }
 };
 template <>
-struct TileWinners<Tagged> {
+struct TileWinners<TaggedCost> {
   /// [pixel]: the sum with its tag, from 0 on; above its 16 bits, the index among eight lanes.
   Scratch<std::int32_t> tagged;
   explicit TileWinners(int pixels) : tagged(pixels) {}
@@ -109,14 +109,14 @@ struct TileWinners<Tagged> {
   struct Places {
     std::int32_t* tagged;
     template <int kCount>
-    CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<Tagged::SumTag> (&keys)[1][kCount]) const {
-      tagged[pixel] = lanes::LeastOfEights(Tagged::SumTag(), keys[0]);
+    CAIRN_LANES_INLINE void find(int pixel, const lanes::Vec<TaggedCost::SumTag> (&keys)[1][kCount]) const {
+      tagged[pixel] = lanes::LeastOfEights(TaggedCost::SumTag(), keys[0]);
     }
     [[nodiscard]] CAIRN_LANES_INLINE VF cost(int pixel) const {
       const VI sum = lanes::And(lanes::Load(I(), tagged + pixel), lanes::Set(I(), 65535));
       const auto none = lanes::RebindMask(F(), lanes::Eq(sum, lanes::Set(I(), 65535)));
       return lanes::IfThenElse(none, lanes::Set(F(), kNoCost),
-                               lanes::ConvertTo(F(), lanes::ShiftRight<Tagged::kShift>(sum)));
+                               lanes::ConvertTo(F(), lanes::ShiftRight<TaggedCost::kShift>(sum)));
     }
     [[nodiscard]] CAIRN_LANES_INLINE VI lane(int pixel) const {
       const VI both = lanes::Load(I(), tagged + pixel);
@@ -130,7 +130,7 @@ struct TileWinners<Tagged> {
 /// Equalises tags, so that equal costs compare as equal.
 template <class Width>
 CAIRN_LANES_INLINE lanes::Vec<typename Width::SumTag> with_equal_tag(lanes::Vec<typename Width::SumTag> key) {
-  if constexpr (std::is_same_v<Width, Tagged>) {
+  if constexpr (std::is_same_v<Width, TaggedCost>) {
     return lanes::Or(key, lanes::Set(typename Width::SumTag(), std::int16_t{7}));
   } else {
     return key;
@@ -202,8 +202,8 @@ void keep_least(const CostBlock<typename Width::Cost>& block, int first,
 template <class Width>
 CAIRN_LANES_INLINE void take_three(typename Width::Cost* at, typename Width::Cost* four) {
   using Lane = typename Width::Cost;
-  constexpr Lane kLeast = std::numeric_limits<Lane>::lowest();
-  alignas(16) static constexpr Lane kTaken[4] = {kNone<Lane>, kNone<Lane>, kNone<Lane>, kLeast};
+  constexpr Lane kMin = std::numeric_limits<Lane>::lowest();
+  alignas(16) static constexpr Lane kTaken[4] = {kNone<Lane>, kNone<Lane>, kNone<Lane>, kMin};
   const lanes::CappedTag<Lane, 4> d;
   for (int i = 0; i < 4; i += static_cast<int>(lanes::Lanes(d))) {
     const auto costs = lanes::LoadU(d, at + i);
@@ -361,9 +361,9 @@ void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& 
 
 /// The minimum costs of eight left pixels, one lane further for each. Their index replaces the tag, which is
 /// 7, and so identifies the pixel of the minimum.
-CAIRN_LANES_INLINE lanes::Vec<Tagged::CostTag> least_of_eight(const std::int16_t* costs,
-                                                              std::ptrdiff_t next) {
-  const Tagged::CostTag d;
+CAIRN_LANES_INLINE lanes::Vec<TaggedCost::CostTag> least_of_eight(const std::int16_t* costs,
+                                                                  std::ptrdiff_t next) {
+  const TaggedCost::CostTag d;
   auto least = lanes::LoadU(d, costs + 7 * next);
   CAIRN_UNROLL
   for (int pixel = 0; pixel < 7; ++pixel) {
@@ -377,12 +377,12 @@ CAIRN_LANES_INLINE lanes::Vec<Tagged::CostTag> least_of_eight(const std::int16_t
 template <bool kTies>
 void update_right(const CostBlock<std::int16_t>& block, const Geometry& g, int x_first, int begin,
                   RightRow<std::int16_t>& right) {
-  const Tagged::CostTag d;
+  const TaggedCost::CostTag d;
   const auto tag = lanes::Set(d, std::int16_t{7});
   std::int16_t* const right_cost = right.cost.data() + g.first_lane(x_first + begin + kRightBlock - 1);
   std::int16_t* const right_lane = right.lane.data() + g.first_lane(x_first + begin + kRightBlock - 1);
   const std::ptrdiff_t next = block.stride + 1;
-  for (int j = 0, count = g.count + kRightBlock - 1; j < count; j += lane_count<Tagged>()) {
+  for (int j = 0, count = g.count + kRightBlock - 1; j < count; j += lane_count<TaggedCost>()) {
     auto least = lanes::LoadU(d, right_cost + j);
     auto where = lanes::LoadU(d, right_lane + j);
     CAIRN_UNROLL
@@ -391,7 +391,7 @@ void update_right(const CostBlock<std::int16_t>& block, const Geometry& g, int x
       const auto cost = least_of_eight(block.of(begin + pixel) + first, next);
       const auto lane =
           lanes::Add(lanes::CountFrom(d, static_cast<std::int16_t>(first)), lanes::And(cost, tag));
-      keep_lesser<Tagged, kTies>(least, where, lanes::Or(cost, tag), lane);
+      keep_lesser<TaggedCost, kTies>(least, where, lanes::Or(cost, tag), lane);
     }
     lanes::StoreU(least, d, right_cost + j);
     lanes::StoreU(where, d, right_lane + j);
@@ -404,7 +404,7 @@ void update_right(const CostBlock<typename Width::Cost>& block, const Geometry& 
                   RightRow<typename Width::Cost>& right) {
   for (int begin = 0; begin < pixels; begin += kRightBlock) {
     const int end = std::min(begin + kRightBlock, pixels);
-    if constexpr (std::is_same_v<Width, Tagged>) {
+    if constexpr (std::is_same_v<Width, TaggedCost>) {
       if (end - begin == kRightBlock) {
         update_right<kTies>(block, g, x_first, begin, right);
         continue;

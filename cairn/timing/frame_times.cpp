@@ -55,7 +55,7 @@ Elapsed timed(const Work& work) {
 
 /// The stages of the current frame. A stage's processor time counts from the end of the previous stage, like
 /// the observer's wall time.
-class StageClock {
+class FrameClock {
  public:
   void begin_frame() {
     current_.clear();
@@ -111,7 +111,7 @@ std::vector<Peer> prepare(std::span<const OpenCvMatcher> matchers, const StereoP
   return peers;
 }
 
-void add_frame(FrameTimes& all, const StageClock& clock, const Elapsed& frame) {
+void add_frame(FrameTimes& all, const FrameClock& clock, const Elapsed& frame) {
   frame.add_to(all.frame);
   Elapsed disparity;
   for (std::size_t i = 0; i < all.stages.size(); ++i) {
@@ -128,7 +128,7 @@ FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& r
                        const Exec& exec, const Limits& limits, std::span<const OpenCvMatcher> matchers) {
   const int least = std::min(3, limits.frames);
   FrameTimes all;
-  StageClock clock;
+  FrameClock clock;
   Exec watched = exec;
   watched.observe = [&clock](std::string_view stage, const StageResult&, double ms) { clock(stage, ms); };
   const Segmenter segmenter(config, rig, watched);

@@ -36,13 +36,13 @@ ReadyMatcher semi_global(const SearchRange& range, int mode) {
   constexpr int kBlock = 5;
   constexpr int kSmallPenalty = 8 * kBlock * kBlock;
   constexpr int kLargePenalty = 32 * kBlock * kBlock;
-  constexpr int kMostDisagreement = 1;
+  constexpr int kMaxDisagreement = 1;
   constexpr int kPrefilterCap = 63;
   constexpr int kUniqueness = 10;
   constexpr int kSpeckleSize = 100;
   constexpr int kSpeckleRange = 2;
   return ready(cv::StereoSGBM::create(range.min_disparity, searched_by_opencv(range.num_disparities), kBlock,
-                                      kSmallPenalty, kLargePenalty, kMostDisagreement, kPrefilterCap,
+                                      kSmallPenalty, kLargePenalty, kMaxDisagreement, kPrefilterCap,
                                       kUniqueness, kSpeckleSize, kSpeckleRange, mode));
 }
 

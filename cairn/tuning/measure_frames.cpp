@@ -37,7 +37,7 @@ DisparityMap copy_of(const DisparityMap& map, const Exec& exec) {
 }
 
 /// Runs the whole method; reuses the disparities if the matching options are unchanged.
-Frame segment_again(const TuningFrame& frame, const Config& config, MatchedOnce& matched, const Exec& exec) {
+Frame segment_again(const TuningFrame& frame, const Config& config, MatchResult& matched, const Exec& exec) {
   validate(config, frame.pair.size(), frame.rig.has_value());
   std::string settings = matching_settings(config);
   if (matched.settings == settings) {
@@ -54,7 +54,7 @@ Frame segment_again(const TuningFrame& frame, const Config& config, MatchedOnce&
   return found;
 }
 
-Outcome judge_objects(const TuningFrame& frame, const Config& config, MatchedOnce& matched,
+Outcome judge_objects(const TuningFrame& frame, const Config& config, MatchResult& matched,
                       const Exec& exec) {
   const Frame found = segment_again(frame, config, matched, exec);
   Outcome outcome;
@@ -97,7 +97,7 @@ Outcome judge_consistency(const TuningFrame& frame, const Config& config, const 
 }
 
 Outcome judge(const TuningFrame& frame, const std::vector<Setting>& settings, TuningGoal goal,
-              MatchedOnce& matched, const Exec& exec) {
+              MatchResult& matched, const Exec& exec) {
   const Config config = with_settings(frame.config, settings);
   switch (goal) {
     case TuningGoal::objects:
@@ -151,7 +151,7 @@ std::optional<std::vector<FrameMeasure>> measure_frames(const std::vector<Tuning
                                                         const std::vector<bool>& chosen,
                                                         const std::vector<Setting>& settings,
                                                         const MeasureOptions& options,
-                                                        std::vector<MatchedOnce>& matched) {
+                                                        std::vector<MatchResult>& matched) {
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (chosen[i]) indices.push_back(i);

@@ -37,7 +37,7 @@ bool shows_the_same(View<const Gray> before, View<const Gray> now);
 TuningGoal goal_of(const std::vector<TuningFrame>& frames);
 
 /// The last matching result of a frame: most options only affect later stages.
-struct MatchedOnce {
+struct MatchResult {
   std::string settings;  // the settings that it depends on; empty: not matched yet
   DisparityMap disparity{};
 };
@@ -64,7 +64,7 @@ std::optional<std::vector<FrameMeasure>> measure_frames(const std::vector<Tuning
                                                         const std::vector<bool>& chosen,
                                                         const std::vector<Setting>& settings,
                                                         const MeasureOptions& options,
-                                                        std::vector<MatchedOnce>& matched);
+                                                        std::vector<MatchResult>& matched);
 std::vector<Loss> losses_of(const std::vector<FrameMeasure>& measures);
 
 }  // namespace cairn

@@ -14,7 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// A smaller gain is not worth a configuration of its own.
-constexpr Margin kLeastGain{.least_share = 0.01};
+constexpr Margin kMinGain{.least_share = 0.01};
 
 // ---- options and frames ----
 
@@ -94,8 +94,8 @@ Tuning prepared(const std::vector<TuningFrame>& frames, const TuneConfig& config
 /// The reason to keep the starting settings; empty if the result is better.
 std::string reason_to_keep(const Tuning& tuning) {
   const SearchResult& s = tuning.search;
-  if (s.best == s.start || !clearly_better(s.start_losses, s.best_losses, kLeastGain)) {
-    return "no other setting is better by " + std::to_string(std::lround(100 * kLeastGain.least_share)) +
+  if (s.best == s.start || !clearly_better(s.start_losses, s.best_losses, kMinGain)) {
+    return "no other setting is better by " + std::to_string(std::lround(100 * kMinGain.least_share)) +
            " % and significantly so";
   }
   const double before = mean_loss(losses_of(tuning.held_out_before));
@@ -219,7 +219,7 @@ class TuningRun {
   int threads_;
   Target target_;
   Clock::time_point start_time_ = Clock::now();
-  std::vector<MatchedOnce> matched_;
+  std::vector<MatchResult> matched_;
   Tuning tuning_;
   std::vector<bool> tuned_on_;
   std::vector<FrameMeasure> latest_;

@@ -16,7 +16,7 @@ bool is_dense(const py::array& array) {
   return aligned && dense && stacked && channels;
 }
 
-Picture::Picture(py::array array, bool bgr, const Pool& pool) : keep_(std::move(array)) {
+LoadedImage::LoadedImage(py::array array, bool bgr, const Pool& pool) : keep_(std::move(array)) {
   if (keep_.ndim() == 2) {
     gray_ = view_over<Gray>(keep_);
     return;

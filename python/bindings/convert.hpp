@@ -118,9 +118,9 @@ View<const T> view_over(const py::array& array) {
 
 /// An image, grey or in colour, as input of the stages. Borrows a dense array; converting colour to grey, or
 /// the order B, G, R, needs an image of its own, from a pool.
-class Picture {
+class LoadedImage {
  public:
-  Picture(py::array array, bool bgr, const Pool& pool);
+  LoadedImage(py::array array, bool bgr, const Pool& pool);
   [[nodiscard]] View<const Gray> gray() const { return gray_; }
   [[nodiscard]] View<const Rgb> rgb() const { return rgb_; }  // empty for grey images
   /// An array, grey or in colour in the order R, G, B.
@@ -185,8 +185,8 @@ struct type_caster<cairn::View<const T>> {
     using Number = typename cairn::python::NumbersOf<T>::Type;
     if (from.is_none()) return true;
     if constexpr (std::is_same_v<T, cairn::Gray> || std::is_same_v<T, cairn::Rgb>) {
-      if (isinstance<cairn::python::Picture>(from)) {
-        const auto& picture = from.cast<const cairn::python::Picture&>();
+      if (isinstance<cairn::python::LoadedImage>(from)) {
+        const auto& picture = from.cast<const cairn::python::LoadedImage&>();
         if constexpr (std::is_same_v<T, cairn::Gray>) value = picture.gray();
         if constexpr (std::is_same_v<T, cairn::Rgb>) value = picture.rgb();
         return true;

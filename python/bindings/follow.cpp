@@ -32,8 +32,8 @@ CAIRN_MEMBERS(FloorInCamera, _up, _height)
 CAIRN_MEMBERS(Reliability, _value, _witnesses, _weakest, _steadiness, _weak_frames, _is_unreliable, _floor)
 CAIRN_MEMBERS(Arm, _option, _value, _restores)
 CAIRN_MEMBERS(ControlEvent, _arm, _is_set, _before, _lead)
-CAIRN_MEMBERS(Step, index, _stamp, frame, ids, motion, map_from_camera, pose_covariance, is_lost, _tracks,
-              _reliability, _control)
+CAIRN_MEMBERS(TrackedFrame, index, _stamp, frame, ids, motion, map_from_camera, pose_covariance, is_lost,
+              _tracks, _reliability, _control)
 
 }  // namespace cairn::python
 
@@ -174,10 +174,10 @@ struct FollowedFrame {
 };
 
 /// A whole sequence.
-class Following {
+class SequenceIterator {
  public:
-  Following(const std::string& source, const io::SourceOptions& options, const io::CompanionFiles& files,
-            FollowSettings settings, const Exec& exec)
+  SequenceIterator(const std::string& source, const io::SourceOptions& options, const io::SensorFiles& files,
+                   FollowSettings settings, const Exec& exec)
       : settings_(std::move(settings)), source_(io::open_sequence(source, options, exec.pool)) {
     if (!source_->rig() && (files.odometry || files.imu || files.poses || files.map)) {
       throw Error(source_->name() +
@@ -234,18 +234,19 @@ class Following {
 };
 
 using File = std::optional<std::filesystem::path>;
-std::unique_ptr<Following> follow(const FollowSettings& settings, const Exec& exec, const std::string& source,
-                                  const File& calib, const std::string& layout, double rate_hz,
-                                  const std::string& frames, bool rectify, const File& odometry,
-                                  const File& imu, const File& poses, const File& map, bool is_read_only) {
+std::unique_ptr<SequenceIterator> follow(const FollowSettings& settings, const Exec& exec,
+                                         const std::string& source, const File& calib,
+                                         const std::string& layout, double rate_hz, const std::string& frames,
+                                         bool rectify, const File& odometry, const File& imu,
+                                         const File& poses, const File& map, bool is_read_only) {
   io::SourceOptions options;
   if (calib) options.calib = calib->string();
   options.layout = layout;
   options.rate_hz = rate_hz;
   options.rectify = rectify;
   if (!frames.empty()) options.frames = io::parse_frame_range(frames);
-  const io::CompanionFiles files{odometry, imu, poses, {}, map, is_read_only, {}};
-  return std::make_unique<Following>(source, options, files, settings, exec);
+  const io::SensorFiles files{odometry, imu, poses, {}, map, is_read_only, {}};
+  return std::make_unique<SequenceIterator>(source, options, files, settings, exec);
 }
 
 // ---- results ----
@@ -257,14 +258,14 @@ auto if_placed(const Track& self) {
 }
 
 /// In the map frame, as in tracks.jsonl.
-std::vector<Track> tracks_of(const Step& step) {
+std::vector<Track> tracks_of(const TrackedFrame& step) {
   std::vector<Track> tracks = step.tracks.list;
   for (Track& track : tracks)
     track.covariance_m2 = covariance_in_map(track, step.map_from_camera, step.pose_covariance);
   return tracks;
 }
 
-py::dict reliability_of(const Step& step) {
+py::dict reliability_of(const TrackedFrame& step) {
   const Reliability& judged = step.reliability;
   py::dict known;
   for (const WitnessName& witness : kWitnesses)
@@ -276,7 +277,7 @@ py::dict reliability_of(const Step& step) {
   return known;
 }
 
-std::optional<py::dict> control_of(const Step& step) {
+std::optional<py::dict> control_of(const TrackedFrame& step) {
   if (!step.control) return std::nullopt;
   py::dict known;
   known["option"] = step.control->arm.option;
@@ -301,10 +302,10 @@ void bind_results(py::module_& m) {
     return MotionPrior{is_gyroscope ? PriorKind::gyroscope : PriorKind::wheels, now_from_before, covariance};
   }));
   shows(prior, "_is_gyroscope", [](const MotionPrior& self) { return self.kind == PriorKind::gyroscope; });
-  auto data = value_class<Step>(m, "StepData");
-  shows(data, "stamp_ns", [](const Step& self) { return self.stamp.ns; });
+  auto data = value_class<TrackedFrame>(m, "StepData");
+  shows(data, "stamp_ns", [](const TrackedFrame& self) { return self.stamp.ns; });
   shows(data, "tracks", &tracks_of);
-  shows(data, "odometry_suspect", [](const Step& self) { return self.tracks.odometry_suspect; });
+  shows(data, "odometry_suspect", [](const TrackedFrame& self) { return self.tracks.odometry_suspect; });
   shows(data, "reliability", &reliability_of);
   shows(data, "control", &control_of);
   m.def("step_json", [](const Step& step, const std::string& name, const std::string& frame_id,
@@ -316,7 +317,9 @@ void bind_results(py::module_& m) {
   });
   m.def(
       "draw_tracks",
-      [](const Picture& left, const Step& step) { return io::draw_tracks(left.gray(), left.rgb(), step); },
+      [](const LoadedImage& left, const TrackedFrame& step) {
+        return io::draw_tracks(left.gray(), left.rgb(), step);
+      },
       Released());
 }
 
@@ -341,13 +344,13 @@ void bind_follow(py::module_& m) {
       .def("parts", [](FollowedFrame& self) {
         return std::tuple(std::move(self.left), std::move(self.step), std::move(self.how));
       });
-  py::class_<Following>(m, "Sequence")
-      .def("next", &Following::next, Released())
-      .def("close", &Following::close, Released())
-      .def("rig", [](const Following& self) { return self.source().rig(); })
-      .def("size", [](const Following& self) { return self.source().size(); })
-      .def("ended_early", [](const Following& self) { return self.source().ended_early(); })
-      .def("remarks", [](const Following& self) {
+  py::class_<SequenceIterator>(m, "Sequence")
+      .def("next", &SequenceIterator::next, Released())
+      .def("close", &SequenceIterator::close, Released())
+      .def("rig", [](const SequenceIterator& self) { return self.source().rig(); })
+      .def("size", [](const SequenceIterator& self) { return self.source().size(); })
+      .def("ended_early", [](const SequenceIterator& self) { return self.source().ended_early(); })
+      .def("remarks", [](const SequenceIterator& self) {
         std::vector<std::pair<std::string, std::size_t>> all;
         for (const io::SourceRemark& remark : self.source().remarks())
           all.emplace_back(remark.what, remark.count);

@@ -30,14 +30,14 @@ std::pair<Frame, io::Provenance> timed(Size size, bool is_external, const PyCali
   return {std::move(frame), std::move(how)};
 }
 
-auto segment_pair(const Picture& left, const Picture& right, const PyCalibration& calibration,
+auto segment_pair(const LoadedImage& left, const LoadedImage& right, const PyCalibration& calibration,
                   const PyConfig& config, const Exec& exec) {
   const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
   return timed(pair.size(), false, calibration, config, exec,
                [&](const auto& rig, const Config& c, const Exec& e) { return segment(pair, rig, c, e); });
 }
 
-auto segment_given(const Picture& left, const DisparityMap& map, const PyCalibration& calibration,
+auto segment_given(const LoadedImage& left, const DisparityMap& map, const PyCalibration& calibration,
                    const PyConfig& config, const Exec& exec) {
   return timed(left.gray().size(), true, calibration, config, exec,
                [&](const auto& rig, const Config& c, const Exec& e) {
@@ -46,8 +46,8 @@ auto segment_given(const Picture& left, const DisparityMap& map, const PyCalibra
                });
 }
 
-StereoResult disparity_of_pair(const Picture& left, const Picture& right, const PyCalibration& calibration,
-                               const PyConfig& config, const Exec& exec) {
+StereoResult disparity_of_pair(const LoadedImage& left, const LoadedImage& right,
+                               const PyCalibration& calibration, const PyConfig& config, const Exec& exec) {
   const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
   calibration.check(pair.size());
   return estimate_disparity(pair, calibration.rig(), config.suited(calibration.calibration).config, exec);
@@ -58,7 +58,7 @@ StereoResult disparity_of_pair(const Picture& left, const Picture& right, const 
 /// A scan or grid of what is seen from the floor.
 template <auto make>
 auto from_floor(const Frame& frame, const FloorFrame& floor, const io::Provenance& how) {
-  return make(frame.space, frame.disparity.disparity_px, floor, *how.rig, how.config.space);
+  return make(frame.space, frame.disparity.disparity_px, floor, *how.rig, how.config.obstacles);
 }
 
 Numbers<float> numbers_of(const std::vector<Vec3>& points, std::vector<py::ssize_t> shape) {
@@ -88,11 +88,11 @@ Numbers<float> points_of_object(const Frame& frame, const StereoRig& rig, int id
 }
 
 void save_png(const std::filesystem::path& path, const py::object& image) {
-  if (!py::isinstance<Picture>(image)) {
+  if (!py::isinstance<LoadedImage>(image)) {
     const auto deep = image.cast<View<const std::uint16_t>>();
     return released([&] { io::save_png(path, deep); });
   }
-  const auto& picture = image.cast<const Picture&>();
+  const auto& picture = image.cast<const LoadedImage&>();
   released([&] {
     if (picture.rgb().empty()) return io::save_png(path, picture.gray());
     io::save_png(path, picture.rgb());
@@ -125,7 +125,7 @@ void bind_frame(py::module_& m) {
   m.def("to_json", &io::objects_json, Released());
   m.def(
       "save",
-      [](const std::filesystem::path& folder, const Picture& left, const Frame& frame,
+      [](const std::filesystem::path& folder, const LoadedImage& left, const Frame& frame,
          const io::Provenance& how) { io::write_result(folder, left.gray(), left.rgb(), frame, how); },
       Released());
 
@@ -134,7 +134,7 @@ void bind_frame(py::module_& m) {
   m.def(
       "load_pair",
       [](const std::filesystem::path& left, const std::filesystem::path& right) {
-        io::PicturePair pair = io::load_pair(left, right);
+        io::LoadedPair pair = io::load_pair(left, right);
         return std::pair{std::move(pair.left), std::move(pair.right)};
       },
       Released());
@@ -162,7 +162,7 @@ void bind_frame(py::module_& m) {
       Released());
   m.def(
       "draw_objects",
-      [](const Picture& left, const Objects& objects, View<const std::uint8_t> floor) {
+      [](const LoadedImage& left, const Objects& objects, View<const std::uint8_t> floor) {
         return io::draw_objects(left.gray(), left.rgb(), objects, floor);
       },
       Released());

@@ -18,9 +18,9 @@ namespace pybind11::detail {
 
 /// A file's image: colour if it has it, else grey.
 template <>
-struct type_caster<cairn::io::Picture> {
+struct type_caster<cairn::io::LoadedImage> {
   static constexpr auto name = const_name("array");
-  static handle cast(cairn::io::Picture from, return_value_policy, handle) {
+  static handle cast(cairn::io::LoadedImage from, return_value_policy, handle) {
     return (from.rgb.empty() ? cairn::python::array_from(std::move(from.gray))
                              : cairn::python::array_from(std::move(from.rgb)))
         .release();

@@ -45,10 +45,10 @@ PyConfig with(PyConfig config, const Settings& settings, const std::vector<std::
 }
 
 Exec make_exec(int threads, const std::string& target) {
-  constexpr int kMostThreads = 1024;
-  if (threads < 0 || threads > kMostThreads) {
+  constexpr int kMaxThreads = 1024;
+  if (threads < 0 || threads > kMaxThreads) {
     throw Error("threads: found " + std::to_string(threads) + ", expected 0 … " +
-                std::to_string(kMostThreads) + "; 0 = one for each processor");
+                std::to_string(kMaxThreads) + "; 0 = one for each processor");
   }
   Exec exec = Exec::with_threads(threads, wanted_target(target, "target"));
   exec.pool = Pool::make();
@@ -134,20 +134,21 @@ void bind_options(py::module_& m) {
     return PyCalibration{io::load_calibration(path, grey_cameras), path};
   });
 
-  py::class_<Picture>(m, "Picture")
+  py::class_<LoadedImage>(m, "Picture")
       .def(py::init([](py::array array, bool bgr, const Exec& exec) {
-        return Picture(std::move(array), bgr, exec.pool);
+        return LoadedImage(std::move(array), bgr, exec.pool);
       }))
       .def_property_readonly(
-          "shape", [](const Picture& p) { return py::make_tuple(p.gray().height(), p.gray().width()); })
+          "shape", [](const LoadedImage& p) { return py::make_tuple(p.gray().height(), p.gray().width()); })
       .def_property_readonly("address",
-                             [](const Picture& p) {  // of the pixels, for the test that none are copied
+                             [](const LoadedImage& p) {  // of the pixels, for the test that none are copied
                                return p.rgb().empty() ? reinterpret_cast<std::size_t>(p.gray().data())
                                                       : reinterpret_cast<std::size_t>(p.rgb().data());
                              })
-      .def("copy", &Picture::copy)
-      .def(py::pickle([](const Picture& self) { return py::make_tuple(self.copy()); },
-                      [](const py::tuple& state) { return Picture(state[0].cast<py::array>(), false, {}); }));
+      .def("copy", &LoadedImage::copy)
+      .def(py::pickle(
+          [](const LoadedImage& self) { return py::make_tuple(self.copy()); },
+          [](const py::tuple& state) { return LoadedImage(state[0].cast<py::array>(), false, {}); }));
   m.def("is_dense", &is_dense);
 }
 

@@ -54,7 +54,7 @@ ObjectSummary summary_of(const std::vector<ObjectErrors>& frames, bool partial) 
 
 // ---- diagnosis ----
 
-Synchrony synchrony_of(const std::vector<std::pair<const Picture*, const Picture*>>& pictures,
+Synchrony synchrony_of(const std::vector<std::pair<const LoadedImage*, const LoadedImage*>>& pictures,
                        const Exec& exec) {
   std::vector<StereoPair> pairs;
   for (const auto& [left, right] : pictures) pairs.push_back(StereoPair::from(left->gray(), right->gray()));
@@ -98,7 +98,7 @@ std::optional<std::string> fault_of(const Synchrony& measured) {
 py::dict read_frame(const io::FrameFiles& files, bool truth) {
   if (!files.right) throw Error(files.folder.string() + ": found no right image, expected a pair");
   py::dict made;
-  io::PicturePair pair = io::load_pair(files.left, *files.right);
+  io::LoadedPair pair = io::load_pair(files.left, *files.right);
   made["left"] = std::move(pair.left);
   made["right"] = std::move(pair.right);
   if (files.calib)
@@ -115,8 +115,8 @@ py::dict read_frame(const io::FrameFiles& files, bool truth) {
 
 /// A frame as tune() borrows it.
 TuningFrame frame_of(const std::string& name, const py::object& frame, const PyConfig& config) {
-  const auto& left = frame.attr("_left").cast<const Picture&>();
-  const auto& right = frame.attr("_right").cast<const Picture&>();
+  const auto& left = frame.attr("_left").cast<const LoadedImage&>();
+  const auto& right = frame.attr("_right").cast<const LoadedImage&>();
   const auto& calibration = frame.attr("_calibration").cast<const PyCalibration&>();
   const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
   calibration.check(pair.size());
@@ -230,7 +230,7 @@ void bind_scores(py::module_& m) {
   synchrony.def("_json", [](const Synchrony& self) { return io::synchrony_json(self, {}); });
   m.def(
       "measure_pair",
-      [](const Picture& left, const Picture& right, const Exec& exec) {
+      [](const LoadedImage& left, const LoadedImage& right, const Exec& exec) {
         return measure_pair(StereoPair::from(left.gray(), right.gray()), exec);
       },
       Released());

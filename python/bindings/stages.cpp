@@ -20,7 +20,7 @@ namespace {
 // ---- a stage's parameters, by their types ----
 
 /// What a stage is called with.
-struct Given {
+struct CallArguments {
   const Config& config;
   const Exec& exec;
   const py::args& values;
@@ -31,9 +31,9 @@ struct Given {
 
 /// The next of the caller's arguments.
 template <class P>
-struct Passed {
+struct ArgumentOf {
   py::detail::make_caster<P> made;
-  void take(Given& given) {
+  void take(CallArguments& given) {
     if (!made.load(given.value(), true))
       throw py::cast_error("argument " + std::to_string(given.next) + " does not fit");
   }
@@ -45,9 +45,9 @@ concept Section = requires(P& section) {
   fields(section, [](auto&&...) {});
 };
 template <Section P>
-struct Passed<P> {
+struct ArgumentOf<P> {
   const P* section = nullptr;
-  void take(const Given& given) {
+  void take(const CallArguments& given) {
     for_each_section(given.config, [&]<class Other>(const char*, const Other& other) {
       if constexpr (std::is_same_v<Other, P>) section = &other;
     });
@@ -55,27 +55,27 @@ struct Passed<P> {
   const P& get() const { return *section; }
 };
 template <>
-struct Passed<Exec> {
+struct ArgumentOf<Exec> {
   const Exec* exec = nullptr;
-  void take(const Given& given) { exec = &given.exec; }
+  void take(const CallArguments& given) { exec = &given.exec; }
   [[nodiscard]] const Exec& get() const { return *exec; }
 };
 /// The colours of the image before.
 template <>
-struct Passed<View<const Rgb>> {
+struct ArgumentOf<View<const Rgb>> {
   View<const Rgb> rgb;
-  void take(const Given& given) {
-    rgb = py::object(given.values[given.next - 1]).cast<const Picture&>().rgb();
+  void take(const CallArguments& given) {
+    rgb = py::object(given.values[given.next - 1]).cast<const LoadedImage&>().rgb();
   }
   [[nodiscard]] View<const Rgb> get() const { return rgb; }
 };
 /// Two images of the same size, valid for the configuration. The source of the ground is irrelevant here.
 template <>
-struct Passed<StereoPair> {
+struct ArgumentOf<StereoPair> {
   std::optional<StereoPair> pair;
-  void take(Given& given) {
-    const auto& left = given.value().cast<const Picture&>();
-    const auto& right = given.value().cast<const Picture&>();
+  void take(CallArguments& given) {
+    const auto& left = given.value().cast<const LoadedImage&>();
+    const auto& right = given.value().cast<const LoadedImage&>();
     pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
     Config any_ground = given.config;
     any_ground.ground = {};
@@ -113,8 +113,8 @@ void note_group(py::list& groups) {
 template <class R, class... P>
 void stage(py::module_& m, const char* name, R (*function)(P...)) {
   m.def(name, [function](const PyConfig& config, const Exec& exec, const py::args& values) {
-    Given given{config.config, exec, values};
-    std::tuple<Passed<std::remove_cvref_t<P>>...> passed;
+    CallArguments given{config.config, exec, values};
+    std::tuple<ArgumentOf<std::remove_cvref_t<P>>...> passed;
     return std::apply(
         [&](auto&... p) {
           (p.take(given), ...);
@@ -145,18 +145,18 @@ Numbers<std::int32_t> grown(const RegionGraph& graph, double mean_difference_max
 }
 
 Image<ObjectHint> hints(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
-                        const DisparityMap& disparity, View<const float> evidence_px, const Ground& ground,
+                        const DisparityMap& disparity, View<const float> textured_px, const Ground& ground,
                         const Background& background, float noise, const Exec& exec) {
   return hint_objects(superpixels.edges,
-                      {{left, rgb, noise}, disparity.disparity_px, evidence_px, ground, background}, exec);
+                      {{left, rgb, noise}, disparity.disparity_px, textured_px, ground, background}, exec);
 }
 
 Numbers<std::int16_t> hint_numbers(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
-                                   const DisparityMap& disparity, View<const float> evidence_px,
+                                   const DisparityMap& disparity, View<const float> textured_px,
                                    const Ground& ground, const Background& background, float noise,
                                    const Exec& exec) {
   const Image<ObjectHint> all =
-      hints(superpixels, left, rgb, disparity, evidence_px, ground, background, noise, exec);
+      hints(superpixels, left, rgb, disparity, textured_px, ground, background, noise, exec);
   Numbers<std::int16_t> numbers{{}, {all.height(), all.width(), 5}};
   for (int y = 0; y < all.height(); ++y) {
     std::for_each_n(all.row(y), all.width(), [&](const ObjectHint& h) {
@@ -167,12 +167,12 @@ Numbers<std::int16_t> hint_numbers(const Superpixels& superpixels, View<const Gr
 }
 
 MergeTree merge_tree(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
-                     const DisparityMap& disparity, View<const float> evidence_px, const Ground& ground,
+                     const DisparityMap& disparity, View<const float> textured_px, const Ground& ground,
                      const Background& background, float noise, const Exec& exec) {
   const Image<ObjectHint> found =
-      hints(superpixels, left, rgb, disparity, evidence_px, ground, background, noise, exec);
-  const Cues cues{{left, rgb, noise}, disparity.disparity_px, evidence_px, ground, background, found};
-  return grow_merge_tree(superpixels, cues, same_thing_trees(), exec);
+      hints(superpixels, left, rgb, disparity, textured_px, ground, background, noise, exec);
+  const Cues cues{{left, rgb, noise}, disparity.disparity_px, textured_px, ground, background, found};
+  return grow_merge_tree(superpixels, cues, merge_classifier(), exec);
 }
 
 /// combine() takes a list of fixed length, so the verdicts are united into one.
@@ -197,10 +197,10 @@ Ground ground_of(const std::variant<const DisparityMap*, View<const float>>& dis
 }
 
 Ground likely(const Ground& ground, const DisparityMap& disparity, const std::optional<StereoRig>& rig,
-              View<const float> evidence_px, View<const Gray> left, const GroundConfig& config,
+              View<const float> textured_px, View<const Gray> left, const GroundConfig& config,
               const Exec& exec) {
   validate(config, rig.has_value());
-  return likely_ground(ground, disparity, rig, config, exec, evidence_px, left);
+  return likely_ground(ground, disparity, rig, config, exec, textured_px, left);
 }
 
 }  // namespace
@@ -223,8 +223,9 @@ void bind_stages(py::module_& m) {
   stage(m, "external_disparity", &external_disparity);
   stage(m, "noise_sigma", &noise_sigma);
   stage(
-      m, "find_evidence", +[](View<const Gray> left, const DisparityMap& map, float noise, const Exec& exec) {
-        return find_evidence({left, {}, noise}, map, {}, exec);
+      m, "select_textured",
+      +[](View<const Gray> left, const DisparityMap& map, float noise, const Exec& exec) {
+        return select_textured({left, {}, noise}, map, {}, exec);
       });
   stage(m, "reject_speckles", &reject_speckles);
   stage(
@@ -267,14 +268,14 @@ void bind_stages(py::module_& m) {
           const SuperpixelsConfig& config, const Exec& exec) {
         return cut_superpixels(LeftImage{left, rgb, noise}, disparity_px, config, exec);
       });
-  stage(m, "segmentation_of", &segmentation_of);
+  stage(m, "superpixel_regions", &superpixel_regions);
   stage(m, "hint_objects", &hint_numbers);
   stage(m, "grow_merge_tree", &merge_tree);
   stage(
       m, "choose_objects", +[](const MergeTree& tree, const ObjectsConfig& config, const Exec& exec) {
-        return choose_objects(tree, whole_object_trees(), limits_of(config, size_of(tree)), exec);
+        return choose_objects(tree, object_classifier(), limits_of(config, size_of(tree)), exec);
       });
-  stage(m, "groups_of", &groups_of);
+  stage(m, "object_regions", &object_regions);
 
   stage(m, "fuse", &fuse);
   stage(
@@ -298,14 +299,14 @@ void bind_stages(py::module_& m) {
       });
   stage(m, "locate", &locate);
   stage(
-      m, "label_space",
+      m, "label_obstacles",
       +[](const Objects& objects, const DisparityMap& disparity, View<const float> confidence,
           const Ground& ground, const Background& background, const Superpixels& superpixels,
-          View<const float> seen_px, const std::optional<StereoRig>& rig, const GroundConfig& config,
-          const Exec& exec) {
-        return label_space(
-            {disparity, seen_px, confidence, ground, background, superpixels.labels, objects.labels}, rig,
-            config, exec);
+          View<const float> surface_disparity_px, const std::optional<StereoRig>& rig,
+          const GroundConfig& config, const Exec& exec) {
+        return label_obstacles({disparity, surface_disparity_px, confidence, ground, background,
+                                superpixels.labels, objects.labels},
+                               rig, config, exec);
       });
 }
 

@@ -59,7 +59,7 @@ void bind_values(py::module_& m) {
   auto objects = value_class<Objects>(m, "Objects");
   shows(
       objects, "_list", [](const Objects& self) -> const auto& { return self.list; });
-  value_class<LeftOut>(m, "LeftOut");
+  value_class<RejectedObstacle>(m, "LeftOut");
   auto scan = value_class<ObstacleScan>(m, "ObstacleScan");
   shows(scan, "ranges_m", [](const ObstacleScan& self) { return Numbers<float>{self.ranges_m}; });
   auto grid = value_class<ObstacleGrid>(m, "ObstacleGrid");
@@ -69,7 +69,7 @@ void bind_values(py::module_& m) {
   shows(grid, "cells", [](const ObstacleGrid& self) {
     return Numbers<std::int8_t>{self.cells, {self.height, self.width}};
   });
-  value_class<StereoResult>(m, "SceneDisparity");
+  value_class<StereoResult>(m, "StereoResult");
 }
 
 }  // namespace cairn::python

@@ -14,7 +14,7 @@ namespace cairn::python {
 
 CAIRN_NAMES(EpipolarOutcome, kEpipolarOutcomes)
 CAIRN_NAMES(Refusal, kRefusals)
-CAIRN_NAMES(LeftOutReason, kLeftOutReasons)
+CAIRN_NAMES(RejectionReason, kLeftOutReasons)
 
 CAIRN_MEMBERS(EpipolarOffset, rows, rows_per_px, points, agreeing, outcome)
 CAIRN_MEMBERS(EpipolarCorrection, offset, right)
@@ -41,7 +41,7 @@ CAIRN_MEMBERS(Object, id, box_px, pixel_count, disparity_px, valid_share, mean_c
               box_on_floor)
 CAIRN_MEMBERS(Objects, labels, _all)
 CAIRN_MEMBERS(StereoResult, disparity_map, ground, floor, epipolar, confidence)
-CAIRN_MEMBERS(LeftOut, reason, box_px, pixel_count, disparity_px, position_in_camera_m, confidence)
+CAIRN_MEMBERS(RejectedObstacle, reason, box_px, pixel_count, disparity_px, position_in_camera_m, confidence)
 CAIRN_MEMBERS(ObstacleScan, angle_min_rad, angle_increment_rad, range_max_m, _ranges)
 CAIRN_MEMBERS(ObstacleGrid, cell_size_m, _width, _height, _origin_x, _origin_y, _cells)
 /// A frame has the members of its stereo result, too.

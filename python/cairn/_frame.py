@@ -141,12 +141,12 @@ segment = checked(segment)
 
 def estimate_disparity(left: ImageLike, right: ImageLike, rig: RigLike = None, *, preset: str = "default",
                        config: Union[Config, PathLike, None] = None, exec: Optional[Exec] = None, bgr: bool = False,
-                       **options) -> SceneDisparity:
+                       **options) -> StereoResult:
     return _cairn.estimate_disparity(left, right, rig, config_of(config, preset, options), exec)
 
 
 estimate_disparity.__doc__ = f"""Estimates disparities, the first half of the method: matching and all checks, including
-ground and speckle. Returns a SceneDisparity.\n{ABOUT}"""
+ground and speckle. Returns a StereoResult.\n{ABOUT}"""
 estimate_disparity = checked(estimate_disparity)
 
 

@@ -90,7 +90,7 @@ def noise_sigma(left: ImageLike) -> float:
     """The standard deviation of the image noise, grey levels; an input of stages that weigh edges."""
 
 
-def find_evidence(left: ImageLike, disparity: DisparityLike, noise_sigma: float) -> NDArray[numpy.float32]:
+def select_textured(left: ImageLike, disparity: DisparityLike, noise_sigma: float) -> NDArray[numpy.float32]:
     """The textured disparities, those supported by texture at the pixel itself: (H, W) float32, px; NaN elsewhere.
     noise_sigma: from noise_sigma()."""
 
@@ -123,9 +123,9 @@ def label_floor(disparity: DisparityLike, ground: Ground, rig: RigLike = None) -
 
 
 def likely_ground(ground: Ground, disparity: DisparityLike, rig: RigLike = None, *,
-                  evidence_px: Optional[DisparitiesLike] = None, left: Optional[ImageLike] = None) -> Ground:
+                  textured_px: Optional[DisparitiesLike] = None, left: Optional[ImageLike] = None) -> Ground:
     """The ground itself or, if it was refused for lack of support, one fitted to all disparities: a floor without
-    texture has no textured disparities. evidence_px (from find_evidence()) and left refuse planes that textured
+    texture has no textured disparities. textured_px (from select_textured()) and left refuse planes that textured
     disparities show to be upright, and allow a reflective floor."""
 
 
@@ -134,9 +134,9 @@ def floor_under_reflections(disparity: DisparityLike, ground: Ground) -> NDArray
     below it, NaN in other holes."""
 
 
-def fit_background(evidence_px: DisparitiesLike, ground: Ground, rig: RigLike = None) -> Background:
-    """Fits walls: upright planes with many textured disparities on them and hardly any behind. evidence_px: from
-    find_evidence()."""
+def fit_background(textured_px: DisparitiesLike, ground: Ground, rig: RigLike = None) -> Background:
+    """Fits walls: upright planes with many textured disparities on them and hardly any behind. textured_px: from
+    select_textured()."""
 
 
 # ---- regions ----
@@ -216,21 +216,21 @@ def cut_superpixels(left: ImageLike, disparity: DisparityLike, noise_sigma: floa
     there is colour) or disparity inside. noise_sigma: from noise_sigma()."""
 
 
-def segmentation_of(superpixels: Superpixels, left: ImageLike) -> Segmentation:
+def superpixel_regions(superpixels: Superpixels, left: ImageLike) -> Segmentation:
     """The superpixels as a Segmentation, with their grey level statistics."""
 
 
-def hint_objects(superpixels: Superpixels, left: ImageLike, disparity: DisparityLike, evidence_px: DisparitiesLike,
+def hint_objects(superpixels: Superpixels, left: ImageLike, disparity: DisparityLike, textured_px: DisparitiesLike,
                  ground: Ground, background: Background, noise_sigma: float) -> NDArray[numpy.int16]:
     """Estimates of a small neural network, used by grow_merge_tree(): (rows, columns, 5) int16 for cells of about 2x2
     pixels of a 320x240 image. The channels are: log-odds in 1/16 that the cell shows an object, and that the outline of
     an object passes; offset to the centroid of the object, x and y in 1/8 cell; log2 of its number of cells in 1/16."""
 
 
-def grow_merge_tree(superpixels: Superpixels, left: ImageLike, disparity: DisparityLike, evidence_px: DisparitiesLike,
+def grow_merge_tree(superpixels: Superpixels, left: ImageLike, disparity: DisparityLike, textured_px: DisparitiesLike,
                     ground: Ground, background: Background, noise_sigma: float) -> MergeTree:
     """Repeatedly merges the two neighbouring regions most likely to belong to one object, judged from all cues by
-    fitted trees, until one is left. Calls hint_objects(). evidence_px: from find_evidence(). ground: from
+    fitted trees, until one is left. Calls hint_objects(). textured_px: from select_textured(). ground: from
     likely_ground(). noise_sigma: from noise_sigma()."""
 
 
@@ -239,7 +239,7 @@ def choose_objects(tree: MergeTree) -> ChosenObjects:
     only min_area and min_confidence are used."""
 
 
-def groups_of(superpixels: Superpixels, chosen: ChosenObjects, disparity: DisparityLike) -> Segmentation:
+def object_regions(superpixels: Superpixels, chosen: ChosenObjects, disparity: DisparityLike) -> Segmentation:
     """The chosen objects as a Segmentation: region 0 is the rest (is_background), the others are the objects. Means in
     px."""
     if len(chosen.object_of) != superpixels.count:
@@ -264,7 +264,7 @@ def measure(candidates: LabelsLike, is_background: Sequence[bool], disparity: Di
 def measure_chosen(chosen: LabelsLike, scores: Sequence[float], disparity: DisparityLike, left: ImageLike,
                    noise_sigma: float) -> Objects:
     """Measures regions chosen as objects: measure() of C++ with scores. chosen: (H, W) integers, the labels of
-    groups_of(). scores: confidence of each region, 0 to 1, from choose_objects(); 0 = no object."""
+    object_regions(). scores: confidence of each region, 0 to 1, from choose_objects(); 0 = no object."""
     check_labels("chosen", chosen, "scores", scores)
     if not all(0 <= score <= 1 for score in scores):
         raise Error("scores: found one outside 0 … 1, expected a confidence for each region")
@@ -280,10 +280,10 @@ def locate(objects: Objects, disparity: DisparityLike, ground: Ground, rig: RigL
     with a rig and a ground also the box on the floor. Returns Objects."""
 
 
-def label_space(objects: Objects, disparity: DisparityLike, confidence: DisparitiesLike, ground: Ground,
-                background: Background, superpixels: Superpixels, seen_px: DisparitiesLike,
+def label_obstacles(objects: Objects, disparity: DisparityLike, confidence: DisparitiesLike, ground: Ground,
+                background: Background, superpixels: Superpixels, surface_disparity_px: DisparitiesLike,
                 rig: RigLike = None) -> NDArray[numpy.uint8]:
-    """The class of each pixel: (H, W) uint8, 255 = obstacle, 128 = floor, 0 = unknown. seen_px: from
+    """The class of each pixel: (H, W) uint8, 255 = obstacle, 128 = floor, 0 = unknown. surface_disparity_px: from
     floor_under_reflections()."""
 
 

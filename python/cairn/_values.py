@@ -139,7 +139,7 @@ class DisparityMap:
     reject: NDArray[numpy.uint16] = "uint16, the bits of cairn.Reject; 0 = none"
 
 
-class SceneDisparity:
+class StereoResult:
     """Disparity after all checks, including ground and speckle, with the reason for every hole."""
 
     disparity_map: DisparityMap = "disparity and reject as a DisparityMap, the input of stages"
@@ -232,7 +232,7 @@ class Segmentation:
 
     labels: NDArray[numpy.int32] = "(H, W) int32, read-only: region of each pixel, an index into `regions`"
     regions: List[Region] = (
-        "list of Region, in raster order of their first pixel; of groups_of(): the background, then the objects")
+        "list of Region, in raster order of their first pixel; of object_regions(): the background, then the objects")
 
     def __len__(self) -> int:
         return len(self.regions)

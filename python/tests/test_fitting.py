@@ -204,7 +204,7 @@ def test_frames_of_a_sequence_are_one_scene(tmp_path):
 def test_corrections_are_reduced_and_limited_as_in_the_library():
     assert fit.beyond_doubt(np.array([0.05, -0.05, 0.28, -0.28, 9])) == pytest.approx([0, 0, 0.2, -0.2, 1])
     code = (SOURCE / "cairn/objects/refine_objects.cpp").read_text()
-    for name, number in (("kDoubt", fit.DOUBT), ("kMostBias", fit.MOST_CORRECTION)):
+    for name, number in (("kDoubt", fit.DOUBT), ("kMaxBias", fit.MOST_CORRECTION)):
         assert float(re.search(rf"{name} = ([0-9.]+);", code)[1]) == number
 
 

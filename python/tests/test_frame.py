@@ -12,12 +12,12 @@ import cairn
 from conftest import same
 
 STAGES = """correct_epipolar match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine
-    noise_sigma find_evidence fit_ground likely_ground reject_below_ground reject_speckles fit_background
+    noise_sigma select_textured fit_ground likely_ground reject_below_ground reject_speckles fit_background
     floor_under_reflections superpixel_edges hint_objects cut_superpixels grow_merge_tree estimate_confidence choose_objects superpixels groups
-    measure refine_objects locate label_space left_out_of""".split()
+    measure refine_objects locate label_obstacles rejected_obstacles""".split()
 PAPER_STAGES = """match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine noise_sigma
     fit_ground reject_below_ground reject_speckles label_floor segment_disparity segment_intensity fuse measure
-    locate estimate_confidence label_space left_out_of""".split()
+    locate estimate_confidence label_obstacles rejected_obstacles""".split()
 
 
 def test_objects_have_attributes_and_a_repr(sample):

@@ -53,9 +53,9 @@ def by_hierarchy(sample):
     assert offset.outcome == "aligned"
     matches = cairn.match_semi_global(sample.left, sample.right, num_disparities=32)
     disparity = cairn.combine(cairn.refine_subpixel(matches), [cairn.reject_inconsistent(matches)])
-    evidence = cairn.find_evidence(sample.left, disparity, noise)
+    evidence = cairn.select_textured(sample.left, disparity, noise)
     seen = cairn.fit_ground(evidence, rig, left=sample.left)
-    ground = cairn.likely_ground(seen, disparity, rig, evidence_px=evidence, left=sample.left)
+    ground = cairn.likely_ground(seen, disparity, rig, textured_px=evidence, left=sample.left)
     disparity = cairn.reject_below_ground(disparity, ground, rig)
     disparity = cairn.reject_speckles(disparity)
     seen = cairn.floor_under_reflections(disparity, ground)
@@ -67,14 +67,14 @@ def by_hierarchy(sample):
     shows_object = hints[..., 0].repeat(2, 0).repeat(2, 1) > 0  # per pixel
     assert (shows_object & (sample.frame.objects_map > 0)).sum() > 0.8 * (sample.frame.objects_map > 0).sum()
     chosen = cairn.choose_objects(tree)
-    groups = cairn.groups_of(superpixels, chosen, disparity)
+    groups = cairn.object_regions(superpixels, chosen, disparity)
     objects = cairn.measure_chosen(groups.labels, chosen.scores, disparity, sample.left, noise)
     objects = cairn.refine_objects(objects, disparity, sample.left, sample.right)
     objects = cairn.locate(objects, disparity, ground, rig)
     confidence = cairn.estimate_confidence(matches, disparity)
-    space = cairn.label_space(objects, disparity, confidence, ground, background, superpixels, seen, rig)
+    space = cairn.label_obstacles(objects, disparity, confidence, ground, background, superpixels, seen, rig)
     assert same(space, sample.frame.space)
-    regions = {"superpixels": cairn.segmentation_of(superpixels, sample.left), "groups": groups}
+    regions = {"superpixels": cairn.superpixel_regions(superpixels, sample.left), "groups": groups}
     return disparity, confidence, regions, objects
 
 
@@ -93,7 +93,7 @@ def test_a_merge_tree_ends_in_the_whole_image(sample):
     disparity = sample.frame.disparity_map
     superpixels = cairn.cut_superpixels(sample.left, disparity, 1, count=50)
     assert superpixels.count == 50 and superpixels.labels.max() == 49
-    evidence = cairn.find_evidence(sample.left, disparity, 1)
+    evidence = cairn.select_textured(sample.left, disparity, 1)
     background = cairn.fit_background(evidence, sample.frame.ground)
     tree = cairn.grow_merge_tree(superpixels, sample.left, disparity, evidence, sample.frame.ground, background, 1)
     parents = tree.parents
@@ -186,24 +186,24 @@ def test_mismatched_arguments_are_refused(sample):
         lambda: cairn.measure(labels - 1, ground, frame.disparity_map, sample.left, 1),
         lambda: cairn.measure(labels, ground, frame.disparity_map, sample.left, -1),
         lambda: cairn.measure(labels[:, 1:], ground, frame.disparity_map, sample.left, 1),
-        lambda: cairn.fuse(cairn.segmentation_of(other, half), frame.groups),
-        lambda: cairn.find_evidence(half, frame.disparity_map, 1),
-        lambda: cairn.find_evidence(sample.left, frame.disparity_map, float("nan")),
+        lambda: cairn.fuse(cairn.superpixel_regions(other, half), frame.groups),
+        lambda: cairn.select_textured(half, frame.disparity_map, 1),
+        lambda: cairn.select_textured(sample.left, frame.disparity_map, float("nan")),
         lambda: cairn.cut_superpixels(half, frame.disparity_map, 1),
         lambda: cairn.cut_superpixels(sample.left, frame.disparity_map, -1),
-        lambda: cairn.segmentation_of(superpixels, half),
+        lambda: cairn.superpixel_regions(superpixels, half),
         lambda: cairn.grow_merge_tree(other, sample.left, *grown, 1),
         lambda: cairn.grow_merge_tree(superpixels, half, *grown, 1),
         lambda: cairn.grow_merge_tree(superpixels, sample.left, *grown, -1),
-        lambda: cairn.groups_of(fewer, chosen, frame.disparity_map),
-        lambda: cairn.groups_of(superpixels, chosen, frame.disparity[1:]),
+        lambda: cairn.object_regions(fewer, chosen, frame.disparity_map),
+        lambda: cairn.object_regions(superpixels, chosen, frame.disparity[1:]),
         lambda: cairn.measure_chosen(labels, scores[1:], frame.disparity_map, sample.left, 1),
         lambda: cairn.measure_chosen(labels, [2.0] * len(scores), frame.disparity_map, sample.left, 1),
         lambda: cairn.measure_chosen(labels, scores, frame.disparity_map, half, 1),
         lambda: cairn.measure_chosen(labels, scores, frame.disparity_map, sample.left, 1, min_area=1),
         lambda: cairn.likely_ground(frame.ground, frame.disparity_map, source="points"),
         lambda: cairn.likely_ground(frame.ground, frame.disparity_map, left=half),
-        lambda: cairn.likely_ground(frame.ground, frame.disparity_map, evidence_px=frame.disparity[1:]),
+        lambda: cairn.likely_ground(frame.ground, frame.disparity_map, textured_px=frame.disparity[1:]),
         lambda: cairn.fit_ground(frame.disparity, left=half),
         lambda: cairn.combine(frame.disparity, [frame.reject[:, 1:]]),
         lambda: cairn.segment_disparity(frame.disparity_map, frame.floor[1:]),

@@ -71,7 +71,7 @@ class SegmentNode : public rclcpp::Node {
       const Picture other = picture_from(*right);
       const auto pair = cairn::StereoPair::from(seen.gray, other.gray, seen.rgb);
       config_ = follower_->config();  // of this frame; it may change options for the next one
-      const cairn::Step step = follower_->next(pair, stamp);
+      const cairn::TrackedFrame step = follower_->next(pair, stamp);
       if (step.control) {
         RCLCPP_INFO(get_logger(), "%s steadier with %s=%s (was %s)",
                     step.control->is_set ? "set:" : "would be", step.control->arm.option.c_str(),
@@ -83,7 +83,7 @@ class SegmentNode : public rclcpp::Node {
     }
   }
 
-  void publish(const cairn::Step& step, const Picture& seen, const std::string& camera) {
+  void publish(const cairn::TrackedFrame& step, const Picture& seen, const std::string& camera) {
     const cairn::ros::Header header = cairn::ros::header_of(step.stamp, camera);
     const cairn::ros::FrameNames names{camera, camera + "_floor", camera + "_map"};
     if (const auto floor = cairn::ros::floor_transform_of(step.stamp, names, step.frame.ground, rig_)) {
@@ -98,8 +98,8 @@ class SegmentNode : public rclcpp::Node {
           cairn::ros::disparity_image_of(header, step.frame, rig_, config_.segmentation.match)));
     }
     if (obstacles_->get_subscription_count() > 0) {
-      obstacles_->publish(as<PointCloud>(
-          cairn::ros::cloud_of(header, step.frame, cairn::Space::obstacle, rig_, seen.gray, seen.rgb)));
+      obstacles_->publish(as<PointCloud>(cairn::ros::cloud_of(
+          header, step.frame, cairn::ObstacleLabel::obstacle, rig_, seen.gray, seen.rgb)));
     }
   }
 

@@ -102,7 +102,7 @@ TEST_F(LiveRecord, StoresItsOptions) {
 
 TEST_F(LiveRecord, TheCamerasFrameOfARecordingIsInTheResults) {
   const samples::Sample sample = samples::load("four_in_a_row");
-  const io::Picture& left = sample.images.left;
+  const io::LoadedImage& left = sample.images.left;
   {
     recordings::CameraFile robot(at("robot.mcap"));
     const auto left_topic = robot.topic<ros::Image>("/front/left/image_rect");

@@ -105,7 +105,7 @@ class Camera {
 
  private:
   void work() {
-    const io::PicturePair pair = io::load_pair(sample() / "left.png", sample() / "right.png");
+    const io::LoadedPair pair = io::load_pair(sample() / "left.png", sample() / "right.png");
     const StereoRig rig = *io::load_calibration(sample() / "calib.txt").rig;
     for (std::int64_t i = 1; !is_over_; ++i) {
       const ros::Header header = ros::header_of({i * 100'000'000}, "left_optical");

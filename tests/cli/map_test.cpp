@@ -19,7 +19,7 @@ class MapCommand : public CommandTest {
     MapFile file = MapFile::open(at(name), MapMode::update, StereoRig{200, 160, 120, 0.12F, 0});
     LandmarkFrame frame;
     Tracks tracks;
-    Landmarked step;
+    LandmarkUpdate step;
     step.state = begin_landmarks(file.load(), file.begin_run("frames/", {0}));
     const std::array places{Point3{0, 0, 0.2}, Point3{2, 0, 0.2}, Point3{0, 3, 0.3}, Point3{3, 3, 0.3},
                             Point3{-1, 2, 0.2}};

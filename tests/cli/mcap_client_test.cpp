@@ -62,10 +62,10 @@ TEST(McapClient, ThirdPartyProgramsReadOurRecordings) {
     Frame frame;
     frame.disparity.disparity_px = cairn::Image<float>(kSize, 7.5F, {});
     add("/disparity", ros::disparity_image_of(header, frame, rig, {}));
-    frame.space = cairn::Image<Space>(kSize, Space::floor, {});
+    frame.space = cairn::Image<ObstacleLabel>(kSize, ObstacleLabel::floor, {});
     frame.objects.labels = cairn::Image<ObjectId>(kSize, ObjectId{3}, {});
     const cairn::Image<Gray> grey(kSize, 77, {});
-    add("/cloud", ros::cloud_of(header, frame, Space::floor, rig, grey, {}));
+    add("/cloud", ros::cloud_of(header, frame, ObstacleLabel::floor, rig, grey, {}));
     ros::OccupancyGrid grid;
     grid.header = header;
     grid.info.resolution = 0.5F;

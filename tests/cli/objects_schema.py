@@ -20,7 +20,7 @@ published = json.loads((source / "docs/schema/objects.schema.json").read_text())
 
 
 def strict(schema):
-    """The schema without unknown keys and with all keys added after 1.0 required: it is open for readers, not for the
+    """The schema without unknown keys and with all keys added after 2.0 required: it is open for readers, not for the
     writer."""
     if isinstance(schema, list):
         return [strict(part) for part in schema]
@@ -129,15 +129,15 @@ for name, document in broken_documents():
     count += 1
     expect(not open_form.is_valid(document), f"passed, though broken: {name}")
 first = copy.deepcopy(full)
-first["schema"] = "1.0"
+first["schema"] = "2.0"
 for node in (first, *first["objects"]):
     for key in LATER & node.keys():
         del node[key]
-expect(open_form.is_valid(first), "a document of 1.0 is refused")
-expect(not closed_form.is_valid(first), "what came later than 1.0 may be left out unseen")
+expect(open_form.is_valid(first), "a document of 2.0 is refused")
+expect(not closed_form.is_valid(first), "what came later than 2.0 may be left out unseen")
 later = copy.deepcopy(full)
-later["schema"], later["objects"][0]["later"] = "1.7", 1
-expect(open_form.is_valid(later), "a later 1.x with one more key is refused")
+later["schema"], later["objects"][0]["later"] = "2.7", 1
+expect(open_form.is_valid(later), "a later 2.x with one more key is refused")
 expect(not closed_form.is_valid(later), "an unknown key would go unseen")
 
 print(f"{len(checked)} documents, {count} broken ones")

@@ -209,13 +209,13 @@ TEST(Rectifier, LeavesARectifiedPairUnchanged) {
   EXPECT_FLOAT_EQ(rectify.rig().baseline_m, 0.1F);
   EXPECT_FLOAT_EQ(rectify.rig().focal_px, 60);
   std::mt19937 random(1);
-  io::PicturePair pair{{Image<Gray>(Size{64, 48}), {}}, {Image<Gray>(Size{64, 48}), {}}};
+  io::LoadedPair pair{{Image<Gray>(Size{64, 48}), {}}, {Image<Gray>(Size{64, 48}), {}}};
   for (Image<Gray>* image : {&pair.left.gray, &pair.right.gray}) {
     for (int y = 0; y < 48; ++y) {
       for (int x = 0; x < 64; ++x) (*image)(x, y) = static_cast<Gray>(random() % 256);
     }
   }
-  const io::PicturePair same = rectify(pair);
+  const io::LoadedPair same = rectify(pair);
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 64; ++x) {
       ASSERT_EQ(same.left.gray(x, y), pair.left.gray(x, y));

@@ -21,7 +21,7 @@ int main(int, char** argv) {
   auto landmarks = cairn::begin_landmarks(file.load(), file.begin_run(argv[1], {}));
   std::size_t written = 0;
   while (const auto frame = sequence->next()) {
-    const cairn::Step step =
+    const cairn::TrackedFrame step =
         follower.next(cairn::StereoPair::from(frame->left.gray, frame->right, frame->left.rgb), frame->stamp);
     const auto seen = cairn::landmark_frame(step, *sequence->rig(), frame->left.gray, frame->left.rgb);
     auto marked = cairn::advance_landmarks(std::move(landmarks), seen, config.landmarks);

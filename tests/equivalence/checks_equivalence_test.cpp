@@ -129,7 +129,7 @@ TEST_P(ChecksEquivalence, LeftRight) {
   for (const Size size : sizes()) {
     for (const int band : {0, 2}) {
       const Matches matches = random_matches(size, band, 11);
-      for (const auto method : {LeftRightMethod::true_, LeftRightMethod::vote}) {
+      for (const auto method : {LeftRightMethod::right_winner, LeftRightMethod::vote}) {
         if (method == LeftRightMethod::vote && size.area() > 2000) continue;  // the twin's time is quadratic
         for (const float max_diff : {-1.0F, 0.0F, 1.5F, 64.0F}) {
           SCOPED_TRACE(text(size) + " band " + std::to_string(band) + " max_diff " +

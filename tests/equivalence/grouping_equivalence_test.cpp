@@ -37,7 +37,7 @@ struct Scene {
   Image<Rgb> colours;
   bool has_colour = false;
   Image<float> disparity_px;
-  Image<float> evidence_px;
+  Image<float> textured_px;
   Ground ground;
   Background background;
   Image<ObjectHint> hints;
@@ -50,7 +50,7 @@ struct Scene {
     const Image<int> chance = random_image<int>(size, 0, 99, seed + 2);
     colours = Image<Rgb>(size);
     disparity_px = Image<float>(size);
-    evidence_px = Image<float>(size);
+    textured_px = Image<float>(size);
     const int holes = static_cast<int>(seed % 4) * 15;
     for (int y = 0; y < size.height; ++y) {
       for (int x = 0; x < size.width; ++x) {
@@ -58,7 +58,7 @@ struct Scene {
         const int n = chance(x, y);
         const float d = 0.9F * static_cast<float>(depths(x / 6, y / 5)) + 0.01F * static_cast<float>(n % 20);
         disparity_px(x, y) = n < holes ? kNaN : d;
-        evidence_px(x, y) = n < 60 ? kNaN : d;
+        textured_px(x, y) = n < 60 ? kNaN : d;
       }
     }
     if (seed % 5 != 1) hints = random_hints(size, seed);
@@ -95,7 +95,7 @@ struct Scene {
 
   [[nodiscard]] View<const Rgb> rgb() const { return has_colour ? colours.view() : View<const Rgb>{}; }
   [[nodiscard]] Cues cues() const {
-    return {{gray, rgb(), 1.25F}, disparity_px, evidence_px, ground, background, hints};
+    return {{gray, rgb(), 1.25F}, disparity_px, textured_px, ground, background, hints};
   }
   [[nodiscard]] Superpixels superpixels(int count) const {
     return cut_superpixels(LeftImage{gray, rgb(), kNoise}, disparity_px, {count}, {});
@@ -270,7 +270,7 @@ TEST(GatherCues, IsTheSameForEveryTarget) {
       scene.background = {{{-90, 300, -5}, {0.1F, 0, 2}}, false};
       for (int x = 0; x < size.width; ++x) {
         scene.disparity_px(x, 0) = 0.37F - static_cast<float>(x);
-        if (!std::isnan(scene.evidence_px(x, 0))) scene.evidence_px(x, 0) = scene.disparity_px(x, 0);
+        if (!std::isnan(scene.textured_px(x, 0))) scene.textured_px(x, 0) = scene.disparity_px(x, 0);
       }
       const Cues cues = scene.cues();
       const Superpixels superpixels = scene.superpixels(9);

@@ -116,7 +116,7 @@ support::RegionScene random_scene(Size size, std::uint32_t seed) {
     if (in_hole) return;
     const auto steps = static_cast<float>(nearness(x / 9, y / 6) + static_cast<int>(random() % 40));
     scene.disparity_px(x, y) = steps / 16;
-    if (known(x, y) % 3 == 0) scene.evidence_px(x, y) = steps / 16;
+    if (known(x, y) % 3 == 0) scene.textured_px(x, y) = steps / 16;
   });
   if (seed % 3 != 0) scene.ground.plane = GroundPlane{0.03125F, 0.25F, -7.5F};
   if (seed % 3 != 1) scene.background.planes = {{-0.0625F, 0, 9}, {0.03125F, 0.125F, -2.25F}};

@@ -228,9 +228,9 @@ FrameCues frame_cues(const Superpixels& superpixels, const Cues& cues) {
 }
 
 /// Regions and their contacts, without any index for speed.
-class Growing {
+class RegionGrower {
  public:
-  Growing(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing)
+  RegionGrower(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing)
       : superpixels_(superpixels),
         cues_(cues),
         same_thing_(same_thing),
@@ -328,7 +328,7 @@ class Growing {
       MergeNode& of = tree_.nodes[slot(part)];
       of.whole = node;
       const float share = static_cast<float>(of.area) / area;
-      tell_end(of.features, share, score);
+      report_end(of.features, share, score);
       origin.larger_part = std::max(origin.larger_part, share);
       origin.least_same_thing = std::min(origin.least_same_thing, of.origin.least_same_thing);
     }
@@ -445,7 +445,7 @@ RegionCues cues_of(const Members& members, const Superpixels& superpixels, const
       }
       count(region.hints, p, cues);
       count(matched, cues.disparity_px(x, y), p, centre, cues);
-      count(textured, cues.evidence_px(x, y), p, centre, cues);
+      count(textured, cues.textured_px(x, y), p, centre, cues);
     }
   }
   region.matched = matched.plane;
@@ -492,7 +492,7 @@ ContactCues contact_of(const Members& a, const Members& b, const Superpixels& su
 }
 
 MergeTree grow_merge_tree(const Superpixels& superpixels, const Cues& cues, const FittedTrees& same_thing) {
-  return Growing(superpixels, cues, same_thing).run();
+  return RegionGrower(superpixels, cues, same_thing).run();
 }
 
 ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_object,

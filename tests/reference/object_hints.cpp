@@ -118,7 +118,7 @@ Cell cell_of(View<const std::uint16_t> edges, const Cues& cues, Size cells, int 
       cell.blue.add(double{1} * blue);
       cell.red.add(double{1} * red);
       cell.edge.add(double{1} * edges(x, y));
-      cell.textured.add(!std::isnan(cues.evidence_px(x, y)));
+      cell.textured.add(!std::isnan(cues.textured_px(x, y)));
       const double ground =
           cues.ground.plane ? std::max(0.0F, cues.ground.plane->disparity_px(fx, fy)) : 0.0F;
       cell.ground.add(ground);

@@ -99,12 +99,12 @@ Image<int> components(Size size, Joined joined) {
 }
 
 /// A growing region graph, as sets.
-struct Growing {
+struct RegionGrower {
   std::map<int, RegionGraph::Node> nodes;  // surviving regions
   std::map<int, std::set<int>> neighbours;
   Merges merged_into;
 
-  explicit Growing(const RegionGraph& graph) : merged_into(graph.nodes.size()) {
+  explicit RegionGrower(const RegionGraph& graph) : merged_into(graph.nodes.size()) {
     std::iota(merged_into.begin(), merged_into.end(), 0);
     for (int i = 0; i < static_cast<int>(graph.nodes.size()); ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -138,7 +138,7 @@ struct Growing {
   }
 };
 
-void fuse_small_regions(Growing& growing, std::int64_t min_region_area) {
+void fuse_small_regions(RegionGrower& growing, std::int64_t min_region_area) {
   while (true) {
     int smallest = -1, target = -1;
     for (const int region : growing.living()) {
@@ -356,7 +356,7 @@ bool may_fuse(const RegionGraph::Node& visited, const RegionGraph::Node& neighbo
 }
 
 Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria) {
-  Growing growing(graph);
+  RegionGrower growing(graph);
   for (bool pass_fused = true; pass_fused;) {
     pass_fused = false;
     for (const int region : growing.living()) {
@@ -376,7 +376,7 @@ Merges grow_statistical(const RegionGraph& graph, const GrowCriteria& criteria) 
 }
 
 Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria) {
-  Growing growing(graph);
+  RegionGrower growing(graph);
   const auto mean = [&](int region) { return growing.nodes[region].mean(); };
   std::vector<int> order = growing.living();
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return mean(a) > mean(b); });
@@ -401,7 +401,7 @@ Merges grow_near_to_far(const RegionGraph& graph, const GrowCriteria& criteria) 
 }
 
 Merges fuse_small_regions(const RegionGraph& graph, const Merges& merged_into, std::int64_t min_region_area) {
-  Growing growing(graph);
+  RegionGrower growing(graph);
   for (int i = 0; i < static_cast<int>(merged_into.size()); ++i) {
     const int survivor = merged_into[static_cast<std::size_t>(i)];
     if (survivor != i) growing.absorb(survivor, i);

@@ -164,8 +164,8 @@ inline std::vector<TrueTracks::Seen> things_in(const DrawnView& view, const Draw
         d.push_back(view.disparity(x, y));
       }
     }
-    constexpr std::size_t kLeast = 40;
-    if (d.size() < kLeast) continue;
+    constexpr std::size_t kMin = 40;
+    if (d.size() < kMin) continue;
     std::nth_element(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2), d.end());
     const auto n = static_cast<double>(d.size());
     const auto p =

@@ -18,7 +18,7 @@ struct RegionScene {
   Image<Gray> gray;
   Image<Rgb> rgb;  // initially empty
   Image<float> disparity_px;
-  Image<float> evidence_px;
+  Image<float> textured_px;
   Ground ground;
   Background background;
 
@@ -34,7 +34,7 @@ struct RegionScene {
     superpixels.edges = Image<std::uint16_t>(size, std::uint16_t{0}, {});
     gray = Image<Gray>(size, Gray{100}, {});
     disparity_px = Image<float>(size, std::numeric_limits<float>::quiet_NaN(), {});
-    evidence_px = disparity_px.clone();
+    textured_px = disparity_px.clone();
   }
 
   /// `shades[i]`: grey level of region i.
@@ -46,7 +46,7 @@ struct RegionScene {
   void place(At at) {
     for_each_pixel([&](int x, int y, std::size_t region) {
       disparity_px(x, y) = at(x, y, region);
-      if ((x + y) % 3 == 0) evidence_px(x, y) = disparity_px(x, y);
+      if ((x + y) % 3 == 0) textured_px(x, y) = disparity_px(x, y);
     });
   }
   template <class Visit>
@@ -59,7 +59,7 @@ struct RegionScene {
   [[nodiscard]] Cues cues() const {
     return {{gray, rgb.empty() ? View<const Rgb>{} : rgb.view(), 1},
             disparity_px,
-            evidence_px,
+            textured_px,
             ground,
             background};
   }

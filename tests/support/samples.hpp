@@ -19,7 +19,7 @@ inline std::filesystem::path folder(const std::string& name) {
 
 /// A pair of data/samples/ with its calibration.
 struct Sample {
-  io::PicturePair images;
+  io::LoadedPair images;
   io::Calibration calibration;
 
   [[nodiscard]] StereoPair pair() const& {

@@ -98,7 +98,7 @@ TEST(OpenCv, SegmentsMatricesAsItDoesImages) {
 
 TEST(OpenCv, SegmentsColourInOpenCvsOrderAsItDoesFiles) {
   const samples::Sample sample = samples::load("four_in_a_row");
-  const auto bgr_of = [](const io::Picture& picture) {
+  const auto bgr_of = [](const io::LoadedImage& picture) {
     cv::Mat bgr;
     cv::cvtColor(mat_of(picture.rgb), bgr, cv::COLOR_RGB2BGR);
     return bgr;

@@ -18,7 +18,7 @@
 namespace cairn::io {
 
 struct CameraImage {
-  Picture left;       // or the only image
+  LoadedImage left;   // or the only image
   Image<Gray> right;  // empty for a camera with one image only
   Stamp stamp;        // by the steady clock
   std::chrono::steady_clock::time_point arrived;

@@ -239,8 +239,7 @@ class CameraSequence : public SourceSequence {
     const std::size_t index = count_++;
     if (!options_.frames.contains(index)) return std::nullopt;
     last_stamp_ = image.stamp;
-    PicturePair pair =
-        calibration_.rectified({std::move(image.left), {std::move(image.right), {}}, 8}, pool_);
+    LoadedPair pair = calibration_.rectified({std::move(image.left), {std::move(image.right), {}}, 8}, pool_);
     SequenceFrame frame{number_text(index),         index, image.stamp,  std::move(pair.left),
                         std::move(pair.right.gray), false, image.arrived};
     watch_.see(frame, names_.source, remarks_);
@@ -299,12 +298,12 @@ class CameraSequence : public SourceSequence {
   static std::string text_of(const StampPairer::Skew& skew) {
     std::string words =
         formatted("right images are %.1f to %.1f ms later than left ones", skew.least_ms, skew.most_ms);
-    if (skew.drift_over_s >= kLeastDriftSeconds) words += formatted(", drift %.0f ppm", skew.drift_ppm);
+    if (skew.drift_over_s >= kMinDriftSeconds) words += formatted(", drift %.0f ppm", skew.drift_ppm);
     return words + "; moving objects get wrong disparities (a common trigger helps)";
   }
 
   static constexpr const char* kDropped = "frame dropped unread, or lost by the camera";
-  static constexpr double kLeastDriftSeconds = 10;
+  static constexpr double kMinDriftSeconds = 10;
 
   CameraNames names_;
   SourceOptions options_;

@@ -173,8 +173,8 @@ TwoFrames halves_of(const FrameBytes& bytes, Layout layout) {
   return {part_of(bytes, 0, 0, size), part_of(bytes, 0, half, size)};
 }
 
-Picture picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool) {
-  Picture picture;
+LoadedImage picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool) {
+  LoadedImage picture;
   if (bytes.kind == FrameBytes::Kind::rgb) {
     picture.rgb = colours_of_rgb(bytes, pool);
     picture.gray = grey_of(picture.rgb.view(), pool);

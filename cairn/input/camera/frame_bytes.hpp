@@ -59,6 +59,6 @@ TwoFrames halves_of(const FrameBytes& bytes, Layout layout);
 
 /// Grey: the unchanged grey or luminance samples, of colours as in grey_of(). With colour if `with_colour`
 /// and the frame has any.
-Picture picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool);
+LoadedImage picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool);
 
 }  // namespace cairn::io

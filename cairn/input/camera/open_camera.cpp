@@ -42,9 +42,9 @@ std::optional<double> number_in(std::string_view text) {
 }
 
 int side_in(const std::string& source, const std::string& key, const std::string& value) {
-  constexpr double kMost = 32768;
+  constexpr double kMax = 32768;
   const std::optional<double> number = number_in(value);
-  if (!number || *number < 1 || *number > kMost || *number != static_cast<int>(*number))
+  if (!number || *number < 1 || *number > kMax || *number != static_cast<int>(*number))
     throw Error(source + ": " + key + ": found '" + value + "', expected 1 ... 32768 px");
   return static_cast<int>(*number);
 }

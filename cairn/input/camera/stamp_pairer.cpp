@@ -10,14 +10,14 @@ namespace cairn::io {
 namespace {
 
 /// Images of one side kept waiting for the other: a quarter of a second at 30 Hz.
-constexpr std::size_t kMostWaiting = 8;
+constexpr std::size_t kMaxWaiting = 8;
 /// A larger change of skew between pairs is not drift: another image has become the nearest.
 constexpr double kJumpMs = 3;
 
 }  // namespace
 
 StampPairer::StampPairer(double max_skew_ms)
-    : pairing_(max_skew_ms, [this](std::size_t side, Pairing::Waiting&& alone) {
+    : pairing_(max_skew_ms, [this](std::size_t side, Pairing::WaitingItem&& alone) {
         ++unpaired_[side];
         const auto& others = pairing_.waiting(1 - side);
         if (others.empty()) return;
@@ -27,7 +27,7 @@ StampPairer::StampPairer(double max_skew_ms)
 
 std::optional<StampPairer::Pair> StampPairer::push(std::size_t side, CameraImage&& image) {
   const Stamp stamp = image.stamp;
-  pairing_.push_live(side, stamp, std::move(image), kMostWaiting);
+  pairing_.push_live(side, stamp, std::move(image), kMaxWaiting);
   auto pair = pairing_.next();
   if (!pair) return std::nullopt;
   note_skew(pair->left.stamp, pair->right.stamp);

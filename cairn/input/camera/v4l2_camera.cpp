@@ -37,7 +37,7 @@ constexpr std::array kFormats = {Format{"Y8I", V4L2_PIX_FMT_Y8I, 2}, Format{"GRE
                                  Format{"YUYV", V4L2_PIX_FMT_YUYV, 2}, Format{"MJPG", V4L2_PIX_FMT_MJPEG, 0}};
 constexpr std::uint32_t kBuffers = 4;
 /// The kernel reports damaged frames with EIO; this many in a row are a failure.
-constexpr int kMostErrors = 8;
+constexpr int kMaxErrors = 8;
 
 std::string name_of(std::uint32_t code) {
   std::string name;
@@ -241,10 +241,10 @@ class V4l2Camera : public Camera {
       throw Error("gives the format " + name_of(pixels.pixelformat) + ", expected " +
                   std::string(format_->name));
     }
-    if (pixels.width == 0 || pixels.height == 0 || pixels.width > kMostPixelsPerSide ||
-        pixels.height > kMostPixelsPerSide) {
+    if (pixels.width == 0 || pixels.height == 0 || pixels.width > kMaxPixelsPerSide ||
+        pixels.height > kMaxPixelsPerSide) {
       throw Error("gives " + std::to_string(pixels.width) + "x" + std::to_string(pixels.height) +
-                  ", expected sides of 1 ... " + std::to_string(kMostPixelsPerSide));
+                  ", expected sides of 1 ... " + std::to_string(kMaxPixelsPerSide));
     }
     if (format_->code == V4L2_PIX_FMT_YUYV && pixels.width % 2 != 0) {
       throw Error("gives YUYV " + std::to_string(pixels.width) + " px wide, expected an even width");
@@ -296,7 +296,7 @@ class V4l2Camera : public Camera {
         return std::nullopt;
       case EIO:
         ++dropped_;
-        if (++errors_ < kMostErrors) return std::nullopt;
+        if (++errors_ < kMaxErrors) return std::nullopt;
         throw Error("returns only errors (EIO): cable, power or USB bus");
       case ENODEV:
       case ENXIO:

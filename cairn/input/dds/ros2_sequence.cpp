@@ -89,14 +89,14 @@ class Ros2Sequence : public io::SourceSequence {
   }
 
  private:
-  struct Received {
+  struct ReceivedImage {
     ros::Image image;
     Clock::time_point arrived;
   };
-  using Pairing = io::StampPairing<Received>;
+  using Pairing = io::StampPairing<ReceivedImage>;
   using Pair = Pairing::Pair;
 
-  static constexpr std::size_t kMostWaiting = 4;  // images of one side waiting for the other
+  static constexpr std::size_t kMaxWaiting = 4;  // images of one side waiting for the other
 
   static std::string prefix_of(const std::string& source) {
     const std::string name = source.substr(kPrefix.size());
@@ -131,7 +131,7 @@ class Ros2Sequence : public io::SourceSequence {
           is_idle = false;
           has_come_[side] = true;
           const Stamp stamp = ros::stamp_of(image->header.stamp);
-          pairing_.push_live(side, stamp, {std::move(*image), Clock::now()}, kMostWaiting);
+          pairing_.push_live(side, stamp, {std::move(*image), Clock::now()}, kMaxWaiting);
           std::optional<Pair> pair = pairing_.next();
           if (!pair) continue;
           last_pair_ = Clock::now();
@@ -239,7 +239,7 @@ class Ros2Sequence : public io::SourceSequence {
     const std::size_t index = count_++;
     if (!options_.frames.contains(index)) return std::nullopt;
     last_stamp_ = stamp;
-    io::PicturePair images =
+    io::LoadedPair images =
         io::pictures_of(pair.left.value.image, topics_[0], pair.right.value.image, topics_[1], bits_, pool_);
     bits_ = images.bits;
     images = calibration_.rectified(std::move(images), pool_);

@@ -110,9 +110,9 @@ class VideoFile {
   double longest_step_s_ = 0;
 };
 
-Picture picture_of(const cv::Mat& image, bool is_grey, const Pool& pool) {
+LoadedImage picture_of(const cv::Mat& image, bool is_grey, const Pool& pool) {
   const Size size{image.cols, image.rows};
-  Picture picture;
+  LoadedImage picture;
   if (is_grey || image.channels() == 1) {
     picture.gray = Image<Gray>(size, pool);
     const int step = image.channels();
@@ -153,7 +153,7 @@ class VideoSequence : public SourceSequence {
   struct NextFrame {
     std::size_t index = 0;
     Stamp stamp;
-    std::optional<PicturePair> pair;  // nullopt if it cannot be decoded
+    std::optional<LoadedPair> pair;  // nullopt if it cannot be decoded
   };
   virtual std::optional<NextFrame> next_pair() = 0;
 
@@ -181,7 +181,7 @@ class VideoSequence : public SourceSequence {
         remark_on({"frame that cannot be read", 1, name, true, true});
         continue;
       }
-      PicturePair pair = calibration_.rectified(std::move(*both->pair), pool_);
+      LoadedPair pair = calibration_.rectified(std::move(*both->pair), pool_);
       SequenceFrame frame{name, both->index, both->stamp, std::move(pair.left), std::move(pair.right.gray),
                           false};
       watch_.see(frame, file_.string(), remarks_);
@@ -220,7 +220,7 @@ class OneVideo : public VideoSequence {
     return std::nullopt;
   }
 
-  [[nodiscard]] PicturePair halves(const cv::Mat& image) {
+  [[nodiscard]] LoadedPair halves(const cv::Mat& image) {
     const bool side_by_side = options().layout == "side_by_side";
     const int length = side_by_side ? image.cols : image.rows;
     if (length % 2 != 0) {
@@ -244,7 +244,7 @@ class TwoVideos : public VideoSequence {
   TwoVideos(const fs::path& left, const fs::path& right, const SourceOptions& options, const Pool& pool)
       : VideoSequence(left.filename().string(), left, options, pool),
         videos_{VideoFile(left, options.rate_hz), VideoFile(right, options.rate_hz)},
-        pairing_(options.max_skew_ms, [this](std::size_t side, Pairing::Waiting&& alone) {
+        pairing_(options.max_skew_ms, [this](std::size_t side, Pairing::WaitingItem&& alone) {
           remark_on({side == 0 ? "left image without a right one" : "right image without a left one", 1,
                      number_text(alone.value.index), true, false});
         }) {
@@ -287,16 +287,15 @@ class TwoVideos : public VideoSequence {
     return std::nullopt;
   }
 
-  std::optional<PicturePair> pair_of(const std::optional<cv::Mat>& left,
-                                     const std::optional<cv::Mat>& right) {
+  std::optional<LoadedPair> pair_of(const std::optional<cv::Mat>& left, const std::optional<cv::Mat>& right) {
     if (!left || !right) return std::nullopt;
     if (left->size() != right->size()) {
       throw Error(videos_[1].path().string() + ": is " + text(Size{right->cols, right->rows}) +
                   ", expected " + text(Size{left->cols, left->rows}) + " as " + videos_[0].path().string() +
                   " is");
     }
-    return PicturePair{picture_of(*left, videos_[0].is_grey(), pool()),
-                       picture_of(*right, videos_[1].is_grey(), pool()), 8};
+    return LoadedPair{picture_of(*left, videos_[0].is_grey(), pool()),
+                      picture_of(*right, videos_[1].is_grey(), pool()), 8};
   }
 
   std::array<VideoFile, 2> videos_;

@@ -17,7 +17,7 @@ using Json = Parameters::Json;
 
 constexpr std::uint8_t kMessageData = 1;
 constexpr int kError = 2;
-constexpr std::int64_t kMostId = std::numeric_limits<std::uint32_t>::max();
+constexpr std::int64_t kMaxId = std::numeric_limits<std::uint32_t>::max();
 
 Json advertisement() {
   Json all = Json::array();
@@ -35,10 +35,10 @@ Json advertisement() {
 
 /// The list for a key, up to a sensible length.
 const nlohmann::json& list_of(const nlohmann::json& message, const char* key) {
-  constexpr std::size_t kMost = 1000;
+  constexpr std::size_t kMax = 1000;
   const io::JsonLine line(message);
   const nlohmann::json& list = line.at(key);
-  if (!list.is_array() || list.size() > kMost) line.refuse(key, "a list of at most 1000");
+  if (!list.is_array() || list.size() > kMax) line.refuse(key, "a list of at most 1000");
   return list;
 }
 
@@ -149,7 +149,7 @@ void Client::handle(const nlohmann::json& message) {
 void Client::subscribe(const nlohmann::json& list) {
   for (const nlohmann::json& each : list) {
     const io::JsonLine line(each);
-    const std::int64_t id = line.integer("id", 0, kMostId);
+    const std::int64_t id = line.integer("id", 0, kMaxId);
     const std::int64_t channel = line.integer("channelId", 1, static_cast<std::int64_t>(kChannels));
     const Channel wanted = channel_at(static_cast<std::size_t>(channel - 1));
     if (subscriptions_.contains(wanted)) {

@@ -19,7 +19,7 @@
 /// one thread.
 namespace cairn::live {
 
-inline constexpr std::size_t kMostClientBytes = 64 * 1024;  // of one message
+inline constexpr std::size_t kMaxClientBytes = 64 * 1024;  // of one message
 /// Identical on the wire; the first one offered by a client, in this order, is selected.
 inline constexpr std::array<std::string_view, 3> kSubprotocols{"foxglove.sdk.v1", "foxglove.websocket.v1",
                                                                "cairn.v1"};

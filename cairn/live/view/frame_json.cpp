@@ -81,7 +81,7 @@ struct ShownObject {
   const Track* track = nullptr;  // nullptr without tracking
 };
 
-std::vector<ShownObject> shown_objects(const Step& step) {
+std::vector<ShownObject> shown_objects(const TrackedFrame& step) {
   std::vector<ShownObject> all;
   const auto& objects = step.frame.objects.list;
   if (step.ids.empty()) {
@@ -156,7 +156,7 @@ Json source_json(const io::SourceStatus& source) {
           {"clock", source.clock}};
 }
 
-Json camera_json(const Step& step, const std::optional<StereoRig>& rig) {
+Json camera_json(const TrackedFrame& step, const std::optional<StereoRig>& rig) {
   if (step.is_lost || !rig || step.ids.empty()) return nullptr;
   Json turn = Json::array();
   for (const double entry : quaternion(step.map_from_camera)) turn.push_back(json(entry));
@@ -232,7 +232,7 @@ Json entity_json(const ShownObject& shown, const Box& box, const Json& stamp,
 }  // namespace
 
 std::string stats_json(const LiveFrame& frame, const std::optional<StereoRig>& rig, const ViewState& state) {
-  const Step& step = frame.step;
+  const TrackedFrame& step = frame.step;
   const auto floor = floor_frame(step.frame.ground, rig);
   Json stages = Json::array();
   for (const io::StageTime& stage : frame.stages)

@@ -52,9 +52,9 @@ constexpr auto kIdle = 30s;       // without reading or answering, until a viewe
 constexpr auto kGoodbye = 500ms;  // to notify viewers at the end
 constexpr std::size_t kCompressedFrame = 1 << 16;  // bytes, of a compressed message
 constexpr int kSendBuffer = 1 << 17;               // bytes; a larger buffer would only add delay
-constexpr std::uint32_t kMostHeader = 8 * 1024;
-constexpr std::uint64_t kMostBody = 1024;
-constexpr int kMostVisitors = 32;  // connections other than viewers
+constexpr std::uint32_t kMaxHeader = 8 * 1024;
+constexpr std::uint64_t kMaxBody = 1024;
+constexpr int kMaxVisitors = 32;  // connections other than viewers
 
 using Response = http::response<http::string_body>;
 
@@ -295,7 +295,7 @@ class ViewServer::Hub {
         pause_.async_wait([this](ErrorCode) { accept(); });
         return;
       }
-      if (visitors_ < kMostVisitors + options_.max_clients) welcome(std::move(socket));
+      if (visitors_ < kMaxVisitors + options_.max_clients) welcome(std::move(socket));
       accept();
     });
   }
@@ -568,7 +568,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
       response.set(http::field::sec_websocket_protocol,
                    beast::string_view(subprotocol.data(), subprotocol.size()));
     }));
-    stream_.read_message_max(kMostClientBytes);
+    stream_.read_message_max(kMaxClientBytes);
     stream_.auto_fragment(false);
     if (hub_.is_on_network()) {
       // Uncompressed labels at a camera's rate exceed the bandwidth of Wi-Fi. Compression costs this thread
@@ -696,8 +696,8 @@ class Visitor : public std::enable_shared_from_this<Visitor<Hub, Stream>> {
 
  private:
   void read() {
-    parser_.header_limit(kMostHeader);
-    parser_.body_limit(kMostBody);
+    parser_.header_limit(kMaxHeader);
+    parser_.body_limit(kMaxBody);
     http::async_read(stream_, buffer_, parser_,
                      [self = this->shared_from_this()](ErrorCode error, std::size_t) { self->take(error); });
   }
@@ -759,7 +759,7 @@ class Visitor : public std::enable_shared_from_this<Visitor<Hub, Stream>> {
 
   Hub& hub_;
   Stream stream_;
-  beast::flat_buffer buffer_{kMostHeader + kMostBody};
+  beast::flat_buffer buffer_{kMaxHeader + kMaxBody};
   http::request_parser<http::string_body> parser_;
   Response response_;
 };

@@ -109,7 +109,7 @@ Json maps(const PageFrame& frame) {
           {"superpixels", packed(frame.superpixels, id)},
           {"groups", packed(frame.groups, id)},
           {"objects", packed(frame.objects, id)},
-          {"space", packed(frame.space, [](Space s) { return static_cast<std::uint8_t>(s); })},
+          {"space", packed(frame.space, [](ObstacleLabel s) { return static_cast<std::uint8_t>(s); })},
           // Ids are shifted by one: 0 is don't care.
           {"true_objects", packed(frame.true_objects, [](TruthId t) { return number(t) + 1; })},
           {"true_disparity", packed_disparity(frame.true_disparity_px)}};

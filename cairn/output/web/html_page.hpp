@@ -5,7 +5,7 @@
 #include <cairn/core/ids.hpp>
 #include <cairn/core/image.hpp>
 #include <cairn/evaluation/object_error.hpp>
-#include <cairn/objects/space.hpp>
+#include <cairn/objects/obstacles.hpp>
 #include <cairn/stereo/reject.hpp>
 #include <string>
 #include <vector>
@@ -29,7 +29,7 @@ struct PageFrame {
   View<const RegionId> superpixels;
   View<const RegionId> groups;
   View<const ObjectId> objects;
-  View<const Space> space;
+  View<const ObstacleLabel> space;
   View<const TruthId> true_objects;
   View<const float> true_disparity_px;
   std::string objects_json;  // the text of an objects.json file, for the tables; may be empty

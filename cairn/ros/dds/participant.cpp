@@ -19,7 +19,7 @@ namespace {
 /// Larger domains have no ports (7400 + 250 · domain).
 constexpr unsigned kLastDomain = 232;
 /// How long a writer waits for slow readers; the same as in ROS.
-constexpr dds_duration_t kMostBlocking = DDS_MSECS(100);
+constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);
 
 std::string environment(const char* name) {
   const char* const value = std::getenv(name);
@@ -95,7 +95,7 @@ using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 Qos make_qos(std::string_view ros_type, bool reliable, int depth) {
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
-                       kMostBlocking);
+                       kMaxBlocking);
   dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
   if (const std::string_view hash = type_hash(ros_type); !hash.empty()) {

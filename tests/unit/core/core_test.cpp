@@ -4,11 +4,11 @@
 
 #include <atomic>
 #include <cairn/core/error.hpp>
-#include <cairn/core/later.hpp>
+#include <cairn/core/future.hpp>
 #include <cairn/core/nearest.hpp>
-#include <cairn/core/observed.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
+#include <cairn/core/stage_clock.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <chrono>
 #include <cmath>
@@ -161,14 +161,14 @@ TEST(SideWork, FinishesBeforeItsDestructorReturns) {
   }
 }
 
-TEST(Later, IsComputedConcurrentlyWithItsOwnPool) {
+TEST(Future, IsComputedConcurrentlyWithItsOwnPool) {
   for (const int threads : {1, 2}) {
     Exec exec = Exec::with_threads(threads);
     exec.observe = [](std::string_view, const StageResult&, double) {};
-    Later<std::string> later(
+    Future<std::string> later(
         exec, [](const Exec& beside) { return std::string(beside.observe ? "seen" : "unseen"); });
     EXPECT_EQ(later.get(), "unseen") << threads;
-    Later<int> fails(exec, [](const Exec&) -> int { throw Error("no"); });
+    Future<int> fails(exec, [](const Exec&) -> int { throw Error("no"); });
     EXPECT_THROW((void)fails.get(), Error) << threads;
   }
 }
@@ -186,7 +186,7 @@ TEST(Pool, HasASecondPoolThatCountsAsPartOfIt) {
   EXPECT_EQ(Pool().beside().heap_allocations(), 0);
 }
 
-TEST(Observed, ReportsEachStageAndReturnsItsResult) {
+TEST(StageClock, ReportsEachStageAndReturnsItsResult) {
   std::vector<std::string> stages;
   Exec exec;
   exec.observe = [&](std::string_view stage, const StageResult& result, double ms) {
@@ -194,7 +194,7 @@ TEST(Observed, ReportsEachStageAndReturnsItsResult) {
     EXPECT_EQ((*result.as<Image<float>>())(0, 0), 4.0F);
     EXPECT_GE(ms, 0);
   };
-  Observed stage(exec);
+  StageClock stage(exec);
   const Image<float> result = stage("refine", Image<float>(Size{1, 1}, 4.0F, {}));
   EXPECT_EQ(result(0, 0), 4.0F);
   EXPECT_EQ(stages, std::vector<std::string>{"refine"});

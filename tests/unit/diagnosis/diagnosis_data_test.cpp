@@ -63,7 +63,7 @@ class GoodSequences : public testing::TestWithParam<const char*> {};
 TEST_P(GoodSequences, AreSynchronousAndAShiftIsDetected) {
   if (!fs::exists(collection() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
   const auto frames = io::find_frames(collection() / GetParam());
-  std::vector<io::PicturePair> images;
+  std::vector<io::LoadedPair> images;
   for (const auto& frame : frames) images.push_back(io::load_pair(frame.left, *frame.right));
   for (const int late : {0, 1}) {
     std::vector<StereoPair> pairs;
@@ -81,7 +81,7 @@ TEST_P(GoodSequences, AreSynchronousAndAShiftIsDetected) {
 TEST_P(GoodSequences, AShiftFromTheMiddleOnIsDetected) {
   if (!fs::exists(collection() / GetParam())) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
   const auto frames = io::find_frames(collection() / GetParam());
-  std::vector<io::PicturePair> images;
+  std::vector<io::LoadedPair> images;
   for (const auto& frame : frames) images.push_back(io::load_pair(frame.left, *frame.right));
   std::vector<StereoPair> pairs;  // the left camera loses an image
   for (std::size_t i = 0; i + 1 < images.size(); ++i) {
@@ -98,7 +98,7 @@ TEST_P(GoodSequences, AShiftFromTheMiddleOnIsDetected) {
 TEST(SlowSequence, IsNotJudgedSynchronous) {
   const fs::path folder = collection() / "real/sequences/conveyor_box";
   if (!fs::exists(folder)) GTEST_SKIP() << "no sequences here (CAIRN_DATA)";
-  std::vector<io::PicturePair> images;
+  std::vector<io::LoadedPair> images;
   for (const auto& frame : io::find_frames(folder)) images.push_back(io::load_pair(frame.left, *frame.right));
   std::vector<StereoPair> pairs;
   for (const auto& pair : images) pairs.push_back(StereoPair::from(pair.left.gray, pair.right.gray));

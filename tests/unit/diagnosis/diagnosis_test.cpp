@@ -166,7 +166,7 @@ TEST_F(Diagnosis, MeasuresAVerticalShift) {
     const RowAlignment measured = measure_pair(StereoPair::from(left(), lower), {}).rows;
     EXPECT_NEAR(static_cast<double>(measured.offset_rows), rows, 0.12);
     EXPECT_NEAR(static_cast<double>(measured.rows_per_px), 0, 0.0012);
-    const auto bin = static_cast<std::size_t>(RowAlignment::kMostBins + std::lround(rows));
+    const auto bin = static_cast<std::size_t>(RowAlignment::kMaxBins + std::lround(rows));
     EXPECT_EQ(*std::max_element(measured.histogram.begin(), measured.histogram.end()),
               measured.histogram[bin]);
     const auto found = findings(left(), lower);

@@ -80,8 +80,8 @@ TEST_F(Pipelines, GiveTheGreyLevelsOfTheirFiles) {
     EXPECT_EQ(source->image_size(), (Size{160, 120}));
     const auto pair = source->next();
     ASSERT_TRUE(pair);
-    const Picture left = load_picture(file("left.png"));
-    const Picture right = load_picture(file("right.png"));
+    const LoadedImage left = load_picture(file("left.png"));
+    const LoadedImage right = load_picture(file("right.png"));
     EXPECT_EQ(differing(pair->left.gray.view(), left.gray.view()), 0) << colour;
     EXPECT_EQ(differing(pair->right.view(), right.gray.view()), 0) << colour;
   }

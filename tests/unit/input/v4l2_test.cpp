@@ -165,7 +165,7 @@ TEST_F(V4l2, MjpgIsDecodedAndADamagedOneIsDropped) {
   const std::string jpeg =
       encode_jpeg({picture.size(), 3, 1, &picture.row(0)->r, picture.view().stride() * 3});
   const support::TemporaryFolder folder;
-  const Picture truth = load_picture(folder.with("frame.jpg", jpeg));
+  const LoadedImage truth = load_picture(folder.with("frame.jpg", jpeg));
   FakeDevice& device = fake_.devices[kDevice];
   device.formats = {V4L2_PIX_FMT_MJPEG};
   device.width = 16;

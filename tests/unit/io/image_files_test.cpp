@@ -43,14 +43,16 @@ class ImageFiles : public testing::Test {
   [[nodiscard]] fs::path file(std::string_view base64) const {
     return folder_.with("picture", decoded(base64));
   }
-  [[nodiscard]] io::Picture picture(std::string_view base64) const { return io::load_picture(file(base64)); }
+  [[nodiscard]] io::LoadedImage picture(std::string_view base64) const {
+    return io::load_picture(file(base64));
+  }
   [[nodiscard]] std::string refused(std::string_view bytes) const {
     const fs::path path = folder_.with("picture", bytes);
     std::string message = refusal([&] { io::load_picture(path); });
     EXPECT_TRUE(message.starts_with(path.string() + ": ")) << message;
     return message;
   }
-  [[nodiscard]] io::Picture pnm(std::string_view bytes) const {
+  [[nodiscard]] io::LoadedImage pnm(std::string_view bytes) const {
     return io::load_picture(folder_.with("picture", bytes));
   }
   TemporaryFolder folder_;
@@ -59,26 +61,26 @@ class ImageFiles : public testing::Test {
 // ---- reading ----
 
 TEST_F(ImageFiles, GreyIsTheLibrarysWeightedSum) {
-  const io::Picture read = pnm(std::string("P6 2 1 255\n") + "\x0a\x14\x1e\xff\xff\xff");
+  const io::LoadedImage read = pnm(std::string("P6 2 1 255\n") + "\x0a\x14\x1e\xff\xff\xff");
   EXPECT_EQ(read.gray(0, 0), grey(10, 20, 30));
   EXPECT_EQ(read.gray(1, 0), 255);
   EXPECT_EQ(read.rgb(0, 0), (Rgb{10, 20, 30}));
 }
 
 TEST_F(ImageFiles, AGreyFileHasNoColour) {
-  const io::Picture read = picture(support::kInterlacedPng);
+  const io::LoadedImage read = picture(support::kInterlacedPng);
   EXPECT_TRUE(read.rgb.empty());
   EXPECT_EQ(pixels(read.gray), fifteen([](int i) { return 17 * i; }));
 }
 
 TEST_F(ImageFiles, AlphaIsIgnored) {
   EXPECT_EQ(pixels(picture(support::kGreyAlphaPng).gray), fifteen([](int i) { return 17 * i; }));
-  const io::Picture deep = picture(support::kColourAlpha16Png);
+  const io::LoadedImage deep = picture(support::kColourAlpha16Png);
   EXPECT_EQ(deep.rgb(3, 1), (Rgb{17 * 8, 255 - 17 * 8, 40}));
 }
 
 TEST_F(ImageFiles, APaletteIsColour) {
-  const io::Picture read = picture(support::kPalettePng);
+  const io::LoadedImage read = picture(support::kPalettePng);
   EXPECT_EQ(read.rgb(0, 0), (Rgb{0, 0, 0}));
   EXPECT_EQ(read.rgb(1, 0), (Rgb{255, 0, 0}));
   EXPECT_EQ(read.rgb(3, 0), (Rgb{10, 20, 30}));
@@ -99,11 +101,11 @@ TEST_F(ImageFiles, ReadsEveryKindOfPnm) {
 }
 
 TEST_F(ImageFiles, ReadsJpegGreyAndProgressiveColour) {
-  const io::Picture flat = picture(support::kGreyJpeg);
+  const io::LoadedImage flat = picture(support::kGreyJpeg);
   EXPECT_EQ(flat.gray.size(), (Size{9, 7}));
   EXPECT_TRUE(flat.rgb.empty());
   EXPECT_NEAR(flat.gray(8, 6), 90, 2);
-  const io::Picture colour = picture(support::kProgressiveJpeg);
+  const io::LoadedImage colour = picture(support::kProgressiveJpeg);
   EXPECT_NEAR(colour.rgb(8, 6).r, 200, 4);
   EXPECT_NEAR(colour.rgb(8, 6).g, 100, 4);
   EXPECT_NEAR(colour.rgb(8, 6).b, 50, 4);

@@ -33,7 +33,7 @@ std::shared_ptr<LiveFrame> frame_of(int index, std::uint64_t revision = 0) {
   frame->step.frame.disparity.disparity_px = Image<float>(kSize, 5.0F, {});
   frame->step.frame.disparity.reject = Image<Reject>(kSize, Reject::none, {});
   frame->step.frame.objects.labels = Image<ObjectId>(kSize, ObjectId::none, {});
-  frame->step.frame.space = Image<Space>(kSize, Space::obstacle, {});
+  frame->step.frame.space = Image<ObstacleLabel>(kSize, ObstacleLabel::obstacle, {});
   frame->pair = pair;
   FollowConfig config;
   config.segmentation.match.num_disparities = 32 + static_cast<int>(revision);

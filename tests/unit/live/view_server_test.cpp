@@ -689,7 +689,7 @@ TEST(ViewServer, EscapesForeignText) {
   EXPECT_TRUE(has(complaint(R"({"op":"getParameters","parameterNames":[1]})"), "holds 1"));
   socket.send_frame(2, "binary");
   EXPECT_TRUE(has(socket.read_op("status").at("message"), "publishing is not supported"));
-  socket.send_frame(1, std::string(kMostClientBytes + 1, ' '));
+  socket.send_frame(1, std::string(kMaxClientBytes + 1, ' '));
   EXPECT_EQ(socket.read_close(), 1009);
   // Random bytes: the server survives.
   std::mt19937 random(7);
@@ -848,7 +848,7 @@ struct Tuned {
   Tuned() {
     LiveOptions how;
     how.tracks = false;
-    runner.emplace(source, "fed", io::CompanionFiles{}, first_config(), how, Exec{});
+    runner.emplace(source, "fed", io::SensorFiles{}, first_config(), how, Exec{});
     ViewOptions options = options_of_test();
     options.tunable = true;
     ViewedRun run = run_of_test();
@@ -890,7 +890,7 @@ TEST(ViewServer, AnOptionSetByAViewerAppliesFromTheNextFrame) {
     Config config = first_config().segmentation;
     if (!option.empty()) set(config, option, value);
     const Frame frame = segment(sample().pair(), sample().calibration.rig, config, {});
-    Step step;
+    TrackedFrame step;
     step.frame.objects.labels = frame.objects.labels.clone();
     return ros::labels_of({}, step).data;
   };

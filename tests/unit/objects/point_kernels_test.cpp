@@ -50,14 +50,15 @@ void expect_same(float got, float expected, int i) {
 
 TEST(PointKernels, PlaceAPixelAsTheRigDoes) {
   constexpr StereoRig kRig{.focal_px = 100, .cx_px = 40, .cy_px = 20, .baseline_m = 0.1F, .doffs_px = 1};
-  constexpr float kFarthest = 8;  // m
+  constexpr float kMaxDistance = 8;  // m
   std::vector<float> disparity_px = drawn(1, 9);
   disparity_px[3] = kNan;
   disparity_px[4] = -1;
   disparity_px[5] = std::nextafter(-1.0F, 0.0F);
   for (const kernels::PointKernels* const run : all_kernels()) {
     Lists out;
-    const int near = run->points_in_camera(kRig, {7, 5}, kCount, disparity_px.data(), kFarthest, out.lists());
+    const int near =
+        run->points_in_camera(kRig, {7, 5}, kCount, disparity_px.data(), kMaxDistance, out.lists());
     int expected_near = 0;
     for (int i = 0; i < kCount; ++i) {
       const Vec3 expected = kRig.point_in_camera_m(static_cast<float>(7 + i), 5, disparity_px[slot(i)])
@@ -65,8 +66,8 @@ TEST(PointKernels, PlaceAPixelAsTheRigDoes) {
       expect_same(out.x[slot(i)], expected.x, i);
       expect_same(out.y[slot(i)], expected.y, i);
       expect_same(out.z[slot(i)], expected.z, i);
-      expected_near += std::abs(expected.x) <= kFarthest && std::abs(expected.y) <= kFarthest &&
-                               std::abs(expected.z) <= kFarthest
+      expected_near += std::abs(expected.x) <= kMaxDistance && std::abs(expected.y) <= kMaxDistance &&
+                               std::abs(expected.z) <= kMaxDistance
                            ? 1
                            : 0;
     }
@@ -95,13 +96,13 @@ TEST(PointKernels, FindTheSidesWithoutTheTails) {
   const std::vector<float> ys = drawn(8, 2);
   for (const kernels::PointKernels* const run : all_kernels()) {
     for (const int count : {6, 40, kCount}) {
-      for (std::size_t tail = 0; tail < kernels::TurnedRectangles::kMostTail; ++tail) {
+      for (std::size_t tail = 0; tail < kernels::TurnedRectangles::kMaxTail; ++tail) {
         kernels::TurnedRectangles rectangles;
         for (std::size_t k = 0; k < kernels::TurnedRectangles::kCount; ++k) {
           rectangles.cosine[k] = std::cos(0.1F * static_cast<float>(k));
           rectangles.sine[k] = std::sin(0.1F * static_cast<float>(k));
         }
-        const std::size_t high_tail = kernels::TurnedRectangles::kMostTail - 1 - tail;
+        const std::size_t high_tail = kernels::TurnedRectangles::kMaxTail - 1 - tail;
         run->find_sides(xs.data(), ys.data(), count, tail, high_tail, rectangles);
         for (std::size_t k = 0; k < kernels::TurnedRectangles::kCount; ++k) {
           std::array<std::vector<float>, 2> turned;

@@ -29,7 +29,7 @@ struct Scene {
   struct Board {
     Rect rect;
     float true_px;
-    float seen_px;  // by the matching
+    float surface_disparity_px;  // by the matching
   };
   Image<Gray> left{kSize, Gray{90}, {}};
   Image<Gray> right{kSize, Gray{90}, {}};
@@ -37,17 +37,17 @@ struct Scene {
   DisparityMap disparity{Image<float>(kSize, 2.0F, {}), Image<Reject>(kSize, Reject::none, {})};
 
   explicit Scene(const std::vector<Board>& boards, bool textured = true, int brighter = 0) {
-    for (const auto& [rect, true_px, seen_px] : boards) {
+    for (const auto& [rect, true_px, surface_disparity_px] : boards) {
       Object object;
       object.id = ObjectId{static_cast<std::int32_t>(objects.list.size()) + 1};
       object.box_px = rect;
       object.pixel_count = rect.width * rect.height;
-      object.disparity_px = seen_px;
+      object.disparity_px = surface_disparity_px;
       objects.list.push_back(object);
       for (int y = rect.y; y < rect.y + rect.height; ++y) {
         for (int x = rect.x; x < rect.x + rect.width; ++x) {
           objects.labels(x, y) = object.id;
-          disparity.disparity_px(x, y) = seen_px;
+          disparity.disparity_px(x, y) = surface_disparity_px;
           left(x, y) = textured ? rounded(wave(x, y)) : Gray{128};
         }
         for (int x = 0; x < kSize.width; ++x) {

@@ -26,7 +26,7 @@ constexpr Size kSize{41, 29};
 /// Tracks 7, 300 and 70000: the first is seen in two pieces, the second is out of view, the third is one
 /// object.
 struct Scene {
-  Step step;
+  TrackedFrame step;
   Image<Gray> left{kSize, Gray{90}, {}};
 
   Scene() {
@@ -141,7 +141,7 @@ TEST(FollowPage, OfTwoTracksInOneObjectTheOneWithoutPixelsHasNoName) {
 
 TEST(FollowPage, ContainsTheTransformOfTheOdometryInTheMap) {
   const Scene scene;
-  Landmarked marked;
+  LandmarkUpdate marked;
   marked.state.located.map_from_odom = rotation_about({0, 0, 0.5});
   marked.state.located.map_from_odom.translation_m = {2, -1, 0};
   const auto place = [&] {

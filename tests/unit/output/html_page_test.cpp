@@ -95,12 +95,13 @@ TEST(HtmlPage, PacksEveryReasonAndTheDontCare) {
 }
 
 TEST(HtmlPage, PacksTheSpaceWithTheValuesOfItsFile) {
-  constexpr std::array kAll{Space::unknown, Space::floor, Space::obstacle};
-  const auto space = filled<Space>([&](int x, int y) { return kAll[static_cast<std::size_t>(x * y % 3)]; });
+  constexpr std::array kAll{ObstacleLabel::unknown, ObstacleLabel::floor, ObstacleLabel::obstacle};
+  const auto space =
+      filled<ObstacleLabel>([&](int x, int y) { return kAll[static_cast<std::size_t>(x * y % 3)]; });
   PageFrame frame;
   frame.space = space;
   const Json maps = Json::parse(encode_frame(frame).maps);
-  expect_map(maps.at("space"), space, [](Space s) { return static_cast<std::uint32_t>(s); });
+  expect_map(maps.at("space"), space, [](ObstacleLabel s) { return static_cast<std::uint32_t>(s); });
   EXPECT_TRUE(Json::parse(encode_frame({}).maps).at("space").is_null());
 }
 

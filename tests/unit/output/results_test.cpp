@@ -56,10 +56,10 @@ class ResultFolder : public testing::Test {
 
 /// Everything but a strip of obstacle is floor.
 void add_space(Frame& frame) {
-  frame.space = Image<Space>(kSize, Space::floor, {});
-  for (int y = 10; y < 22; ++y) std::fill_n(frame.space.row(y) + 20, 15, Space::obstacle);
-  LeftOut left;
-  left.reason = LeftOutReason::too_small;
+  frame.space = Image<ObstacleLabel>(kSize, ObstacleLabel::floor, {});
+  for (int y = 10; y < 22; ++y) std::fill_n(frame.space.row(y) + 20, 15, ObstacleLabel::obstacle);
+  RejectedObstacle left;
+  left.reason = RejectionReason::too_small;
   left.box_px = {1, 2, 3, 4};
   left.pixel_count = 12;
   left.disparity_px = 5;

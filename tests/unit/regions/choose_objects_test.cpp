@@ -105,7 +105,7 @@ TEST(GroupsOf, AreTheObjectsWithTheirDisparitiesOnBackground) {
   Superpixels superpixels{grid<RegionId>({{0, 0, 1}, {2, 2, 1}}), 3, {}};
   const DisparityMap disparity{grid<float, float>({{4, kNaN, 8}, {2, 2, 10}}),
                                Image<Reject>(Size{3, 2}, Reject::none, {})};
-  const Segmentation groups = groups_of(superpixels, {{0, 2, 1}, {0, 0.9F, 0.8F}}, disparity, {});
+  const Segmentation groups = object_regions(superpixels, {{0, 2, 1}, {0, 0.9F, 0.8F}}, disparity, {});
   EXPECT_EQ(numbers(groups.labels), (std::vector<std::vector<std::int64_t>>{{0, 0, 2}, {1, 1, 2}}));
   ASSERT_EQ(groups.regions.size(), 3U);
   EXPECT_TRUE(groups.regions[0].is_background);
@@ -123,7 +123,7 @@ TEST(GroupsOf, RegionZeroExistsEvenIfAllPixelsAreObjects) {
   Superpixels superpixels{grid<RegionId>({{0, 1}}), 2, {}};
   const DisparityMap disparity{Image<float>(Size{2, 1}, kNaN, {}),
                                Image<Reject>(Size{2, 1}, Reject::no_data, {})};
-  const Segmentation groups = groups_of(superpixels, {{1, 1}, {0, 0.9F}}, disparity, {});
+  const Segmentation groups = object_regions(superpixels, {{1, 1}, {0, 0.9F}}, disparity, {});
   ASSERT_EQ(groups.regions.size(), 2U);
   EXPECT_TRUE(groups.regions[0].is_background);
   EXPECT_EQ(groups.regions[0].pixel_count, 0);

@@ -217,7 +217,7 @@ TEST(Features, OfTheWholeImageAreUnknownWithoutSurroundings) {
 
 TEST(TellEnd, FillsInTheLastTwo) {
   ObjectFeatures features{};
-  tell_end(features, 0.25F, -1.5F);
+  report_end(features, 0.25F, -1.5F);
   const auto names = object_feature_names();
   EXPECT_EQ(features.at(where(names, "its share of its parent")), 0.25F);
   EXPECT_EQ(features.at(where(names, "same-object score, rest of its parent")), -1.5F);
@@ -238,8 +238,8 @@ RegionScene doubled(const RegionScene& scene) {
   result.superpixels.edges = twice(scene.superpixels.edges);
   result.gray = twice(scene.gray);
   result.disparity_px = twice(scene.disparity_px);
-  result.evidence_px = twice(scene.evidence_px);
-  for (Image<float>* image : {&result.disparity_px, &result.evidence_px}) {
+  result.textured_px = twice(scene.textured_px);
+  for (Image<float>* image : {&result.disparity_px, &result.textured_px}) {
     for (int y = 0; y < size.height; ++y) {
       for (int x = 0; x < size.width; ++x) (*image)(x, y) *= 2;
     }

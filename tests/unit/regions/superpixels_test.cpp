@@ -121,7 +121,7 @@ TEST(Superpixels, AreConnectedAndNumberedInRasterOrder) {
 
 TEST(Superpixels, AsASegmentationHaveMeanGreyLevels) {
   const Image<Gray> gray = stripes({50, 200});
-  const Segmentation segmentation = segmentation_of(cut(gray, 500), gray, {});
+  const Segmentation segmentation = superpixel_regions(cut(gray, 500), gray, {});
   ASSERT_EQ(segmentation.regions.size(), 2U);
   EXPECT_EQ(segmentation.regions[0].mean, 50);
   EXPECT_EQ(segmentation.regions[1].mean, 200);

@@ -43,7 +43,7 @@ std::string message_of(const auto& call) {
 live::LiveFramePtr made_frame(const std::string& frame_id) {
   const std::filesystem::path folder =
       std::filesystem::path(CAIRN_SOURCE_DIR) / "data" / "samples" / "four_in_a_row";
-  io::PicturePair images = io::load_pair(folder / "left.png", folder / "right.png");
+  io::LoadedPair images = io::load_pair(folder / "left.png", folder / "right.png");
   const io::Calibration calibration = io::load_calibration(folder / "calib.txt");
   FollowConfig config;
   config.segmentation.match.num_disparities = calibration.num_disparities.value_or(64);
@@ -180,7 +180,7 @@ void expect_the_bytes_of_cyclone(const M& message, const dds_topic_descriptor_t&
 }
 
 TEST_F(Dds, BytesEqualThoseOfCyclone) {
-  const Step& step = live_frame()->step;
+  const TrackedFrame& step = live_frame()->step;
   const ros::Header header = ros::header_of(step.stamp, "camera");
   const StereoRig camera = rig();
   expect_the_bytes_of_cyclone<std_msgs_msg_dds__String_>(ros::String{"so"}, std_msgs_msg_dds__String__desc);
@@ -192,8 +192,8 @@ TEST_F(Dds, BytesEqualThoseOfCyclone) {
   expect_the_bytes_of_cyclone<stereo_msgs_msg_dds__DisparityImage_>(
       ros::disparity_image_of(header, step.frame, camera, live_frame()->config->segmentation.match),
       stereo_msgs_msg_dds__DisparityImage__desc);
-  const ros::PointCloud2 cloud =
-      ros::cloud_of(header, step.frame, Space::obstacle, camera, live_frame()->pair->left.gray.view(), {}, 3);
+  const ros::PointCloud2 cloud = ros::cloud_of(header, step.frame, ObstacleLabel::obstacle, camera,
+                                               live_frame()->pair->left.gray.view(), {}, 3);
   EXPECT_GT(cloud.width, 100U);
   expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__PointCloud2_>(cloud,
                                                                  sensor_msgs_msg_dds__PointCloud2__desc);
@@ -278,8 +278,8 @@ TEST_F(Dds, ResultsArePublished) {
   expect_same(come(objects), ros::detections_of(header, frame->step, camera));
   expect_same(come(disparity),
               ros::disparity_image_of(header, found, camera, frame->config->segmentation.match));
-  expect_same(come(obstacles), ros::cloud_of(header, found, Space::obstacle, camera, left, colours));
-  expect_same(come(floor), ros::cloud_of(header, found, Space::floor, camera, left, colours));
+  expect_same(come(obstacles), ros::cloud_of(header, found, ObstacleLabel::obstacle, camera, left, colours));
+  expect_same(come(floor), ros::cloud_of(header, found, ObstacleLabel::floor, camera, left, colours));
   expect_same(come(labels), ros::labels_of(header, frame->step));
   expect_same(come(reject), ros::reject_of(header, found));
   expect_same(come(grid), *ros::grid_of(ros::header_of(frame->step.stamp, "cairn_floor"), found, camera,
@@ -387,13 +387,13 @@ ros::Image image(const std::string& encoding, std::uint32_t width, std::uint32_t
   return message;
 }
 
-io::PicturePair images(const ros::Image& left, const ros::Image& right, int bits = 8) {
+io::LoadedPair images(const ros::Image& left, const ros::Image& right, int bits = 8) {
   return io::pictures_of(left, "/l", right, "/r", bits, {});
 }
 
 TEST(RosImages, RowsMayBeLongerThanTheImage) {
   const ros::Image grey = image("mono8", 2, 4, {1, 2, 9, 9, 3, 4, 9, 9});
-  const io::PicturePair pair = images(grey, grey);
+  const io::LoadedPair pair = images(grey, grey);
   EXPECT_EQ(pair.left.gray.size(), (Size{2, 2}));
   EXPECT_EQ(pair.left.gray(1, 0), 2);
   EXPECT_EQ(pair.left.gray(0, 1), 3);
@@ -401,7 +401,7 @@ TEST(RosImages, RowsMayBeLongerThanTheImage) {
 }
 
 TEST(RosImages, ChannelsAreInTheDeclaredOrder) {
-  const io::PicturePair pair = images(image("bgr8", 1, 3, {10, 20, 30}), image("rgb8", 1, 3, {10, 20, 30}));
+  const io::LoadedPair pair = images(image("bgr8", 1, 3, {10, 20, 30}), image("rgb8", 1, 3, {10, 20, 30}));
   EXPECT_EQ(pair.left.rgb(0, 0), (Rgb{30, 20, 10}));
   EXPECT_EQ(pair.left.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
   EXPECT_EQ(pair.right.gray(0, 0), (77 * 10 + 150 * 20 + 29 * 30 + 128) >> 8);
@@ -409,7 +409,7 @@ TEST(RosImages, ChannelsAreInTheDeclaredOrder) {
 }
 
 TEST(RosImages, DropAlpha) {
-  const io::PicturePair pair =
+  const io::LoadedPair pair =
       images(image("rgba8", 1, 4, {10, 20, 30, 7}), image("bgra8", 1, 4, {10, 20, 30, 7}));
   EXPECT_EQ(pair.left.rgb(0, 0), (Rgb{10, 20, 30}));
   EXPECT_EQ(pair.right.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
@@ -418,7 +418,7 @@ TEST(RosImages, DropAlpha) {
 TEST(RosImages, DeepImagesKeepTheirHighBits) {
   ros::Image left = image("mono16", 2, 4, {0x00, 0x01, 0xff, 0x0f});
   const ros::Image right = image("mono16", 2, 4, {0x10, 0x00, 0x20, 0x00});
-  const io::PicturePair pair = images(left, right);
+  const io::LoadedPair pair = images(left, right);
   EXPECT_EQ(pair.bits, 12);
   EXPECT_EQ(pair.left.gray(0, 0), 0x10);
   EXPECT_EQ(pair.left.gray(1, 0), 0xff);

@@ -14,10 +14,10 @@ namespace cairn::ros {
 namespace {
 
 struct Sample {
-  io::PicturePair images;
+  io::LoadedPair images;
   io::Calibration calibration;
   Config config;
-  Step step;
+  TrackedFrame step;
 };
 
 /// The objects of an image, and their tracks in a sequence of this one image.
@@ -144,17 +144,17 @@ TEST(RosFromStep, LabelsAndReasonsEqualThoseOfTheFrame) {
 TEST(RosFromStep, CloudsContainThePixelsOfTheirClass) {
   const Sample& s = sample();
   const auto& images = s.images.left;
-  const auto cloud = [&](Space space, int stride) {
+  const auto cloud = [&](ObstacleLabel space, int stride) {
     return cloud_of(kHeader, s.step.frame, space, s.calibration.rig, images.gray, images.rgb, stride);
   };
-  const PointCloud2 obstacles = cloud(Space::obstacle, 1);
-  const PointCloud2 floor = cloud(Space::floor, 1);
+  const PointCloud2 obstacles = cloud(ObstacleLabel::obstacle, 1);
+  const PointCloud2 floor = cloud(ObstacleLabel::floor, 1);
   EXPECT_GT(obstacles.width, 1000U);
   EXPECT_GT(floor.width, 1000U);
   EXPECT_EQ(obstacles.data.size(), std::size_t{obstacles.width} * 24);
   EXPECT_GT(float_at(obstacles.data, 8), 0.3F);
-  EXPECT_NEAR(cloud(Space::obstacle, 4).width, obstacles.width / 16.0, obstacles.width / 40.0);
-  EXPECT_EQ(cloud_of(kHeader, s.step.frame, Space::floor, std::nullopt, images.gray, {}).width, 0U);
+  EXPECT_NEAR(cloud(ObstacleLabel::obstacle, 4).width, obstacles.width / 16.0, obstacles.width / 40.0);
+  EXPECT_EQ(cloud_of(kHeader, s.step.frame, ObstacleLabel::floor, std::nullopt, images.gray, {}).width, 0U);
 }
 
 TEST(RosFromStep, TheFloorIsBelowTheCamera) {
@@ -185,12 +185,12 @@ TEST(RosFromStep, TheFloorIsBelowTheCamera) {
 
 TEST(RosFromStep, TheGridEqualsThatOfTheLibrary) {
   const Sample& s = sample();
-  const auto grid = grid_of(kHeader, s.step.frame, s.calibration.rig, s.config.space);
+  const auto grid = grid_of(kHeader, s.step.frame, s.calibration.rig, s.config.obstacles);
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->data.size(), std::size_t{grid->info.width} * grid->info.height);
   EXPECT_NE(std::find(grid->data.begin(), grid->data.end(), std::int8_t{100}), grid->data.end());
   EXPECT_NE(std::find(grid->data.begin(), grid->data.end(), std::int8_t{0}), grid->data.end());
-  EXPECT_FALSE(grid_of(kHeader, s.step.frame, std::nullopt, s.config.space));
+  EXPECT_FALSE(grid_of(kHeader, s.step.frame, std::nullopt, s.config.obstacles));
 }
 
 }  // namespace

@@ -113,8 +113,8 @@ Track track_at(std::int64_t id, Point3 position_m) {
   return track;
 }
 
-Sighting sighting_at(std::int32_t object, Point3 position_m, float confidence = 0.9F) {
-  Sighting seen;
+Detection sighting_at(std::int32_t object, Point3 position_m, float confidence = 0.9F) {
+  Detection seen;
   seen.object = ObjectId{object};
   seen.has_place = true;
   seen.position_in_camera_m = position_m;
@@ -144,23 +144,23 @@ int& common(Overlaps& overlaps, std::size_t track, int object) {
       .common[track * static_cast<std::size_t>(overlaps.objects) + static_cast<std::size_t>(object) - 1];
 }
 
-std::vector<std::pair<std::int64_t, std::int32_t>> pairs(const std::vector<Match>& matches) {
+std::vector<std::pair<std::int64_t, std::int32_t>> pairs(const std::vector<Assignment>& matches) {
   std::vector<std::pair<std::int64_t, std::int32_t>> found;
-  for (const Match& match : matches) found.emplace_back(number(match.track), number(match.object));
+  for (const Assignment& match : matches) found.emplace_back(number(match.track), number(match.object));
   return found;
 }
 using Pairs = std::vector<std::pair<std::int64_t, std::int32_t>>;
 
-std::vector<Match> associated(const Tracks& tracks, const std::vector<Sighting>& sightings,
-                              const Overlaps& overlaps) {
-  return associate(tracks, sightings, overlaps, {}, {}, Stamp{100'000'000}, {});
+std::vector<Assignment> associated(const Tracks& tracks, const std::vector<Detection>& detections,
+                                   const Overlaps& overlaps) {
+  return associate(tracks, detections, overlaps, {Stamp{100'000'000}, {}}, {});
 }
 
 TEST(Associate, GivesEachTrackTheObjectAtItsPlace) {
   const Tracks tracks{{track_at(3, {0, 0, 2}), track_at(8, {1, 0, 2})}, 9, {}};
-  const std::vector sightings{sighting_at(1, {1.02, 0, 2}), sighting_at(2, {0.01, 0, 2}),
-                              sighting_at(3, {0, 0, 3})};
-  EXPECT_EQ(pairs(associated(tracks, sightings, no_overlaps(tracks, 3))), (Pairs{{3, 2}, {8, 1}}));
+  const std::vector detections{sighting_at(1, {1.02, 0, 2}), sighting_at(2, {0.01, 0, 2}),
+                               sighting_at(3, {0, 0, 3})};
+  EXPECT_EQ(pairs(associated(tracks, detections, no_overlaps(tracks, 3))), (Pairs{{3, 2}, {8, 1}}));
 }
 
 TEST(Associate, NoTrackGetsAnObjectBeyondTheGate) {
@@ -180,7 +180,7 @@ TEST(Associate, ColoursDecideBetweenTracksAtTheSamePosition) {
   Tracks tracks{{track_at(1, {0, 0, 2}), track_at(2, {0, 0, 2})}, 3, {}};
   tracks.list[1].look = {};
   tracks.list[1].look[7] = tracks.list[1].look[70] = 1;
-  Sighting seen = sighting_at(1, {0, 0, 2});
+  Detection seen = sighting_at(1, {0, 0, 2});
   seen.look = tracks.list[1].look;
   EXPECT_EQ(pairs(associated(tracks, {seen}, no_overlaps(tracks, 1))), (Pairs{{2, 1}}));
 }
@@ -192,8 +192,8 @@ TEST(Associate, TiesGoToTheLowerTrack) {
 
 TEST(Associate, ConfidentObjectsAreMatchedFirst) {
   const Tracks tracks{{track_at(1, {0, 0, 2})}, 2, {}};
-  const std::vector sightings{sighting_at(1, {0, 0, 2}, 0.2F), sighting_at(2, {0.03, 0, 2}, 0.9F)};
-  EXPECT_EQ(pairs(associated(tracks, sightings, no_overlaps(tracks, 2))), (Pairs{{1, 2}}));
+  const std::vector detections{sighting_at(1, {0, 0, 2}, 0.2F), sighting_at(2, {0.03, 0, 2}, 0.9F)};
+  EXPECT_EQ(pairs(associated(tracks, detections, no_overlaps(tracks, 2))), (Pairs{{1, 2}}));
 }
 
 TEST(Associate, AnUncertainObjectIsMatchedIfThereIsNoBetterOne) {
@@ -204,27 +204,27 @@ TEST(Associate, AnUncertainObjectIsMatchedIfThereIsNoBetterOne) {
 
 TEST(Associate, PiecesOfOneObjectShareItsTrack) {
   Tracks tracks{{track_at(1, {0, 0, 2})}, 2, {}};
-  std::vector sightings{sighting_at(1, {0, 0, 2}), sighting_at(2, {0.15, 0, 2})};
-  for (Sighting& seen : sightings) seen.pixel_count = 40;
+  std::vector detections{sighting_at(1, {0, 0, 2}), sighting_at(2, {0.15, 0, 2})};
+  for (Detection& seen : detections) seen.pixel_count = 40;
   Overlaps overlaps = no_overlaps(tracks, 2);
   common(overlaps, 0, 1) = 38;
   common(overlaps, 0, 2) = 35;
-  EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}, {1, 2}}));
+  EXPECT_EQ(pairs(associated(tracks, detections, overlaps)), (Pairs{{1, 1}, {1, 2}}));
   // A distant object is not a piece, nor is one that overlaps only with its edge …
-  sightings[1].box_px.x += 3;
-  EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}}));
-  sightings[1].box_px.x -= 3;
+  detections[1].box_px.x += 3;
+  EXPECT_EQ(pairs(associated(tracks, detections, overlaps)), (Pairs{{1, 1}}));
+  detections[1].box_px.x -= 3;
   common(overlaps, 0, 2) = 20;
-  EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}}));
+  EXPECT_EQ(pairs(associated(tracks, detections, overlaps)), (Pairs{{1, 1}}));
   // … and an object that is in pieces for long is several objects.
   common(overlaps, 0, 2) = 35;
   tracks.list[0].in_parts = 5;
-  EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 1}}));
+  EXPECT_EQ(pairs(associated(tracks, detections, overlaps)), (Pairs{{1, 1}}));
 }
 
 TEST(Associate, AnObjectThatCoversTwoTracksGoesToOneOfThem) {
   const Tracks tracks{{track_at(1, {0, 0, 2}), track_at(2, {0.8, 0, 2})}, 3, {}};
-  Sighting both = sighting_at(1, {0.4, 0, 2});
+  Detection both = sighting_at(1, {0.4, 0, 2});
   both.pixel_count = 190;
   Overlaps overlaps = no_overlaps(tracks, 1);
   common(overlaps, 0, 1) = 90;
@@ -236,11 +236,11 @@ TEST(Associate, AnObjectThatCoversTwoTracksGoesToOneOfThem) {
 TEST(Associate, WithoutPositionsMasksDecide) {
   Tracks tracks{{track_at(1, {}), track_at(2, {})}, 3, {}};
   for (Track& track : tracks.list) track.has_place = false;
-  std::vector sightings{sighting_at(1, {}), sighting_at(2, {})};
-  for (Sighting& seen : sightings) seen.has_place = false;
+  std::vector detections{sighting_at(1, {}), sighting_at(2, {})};
+  for (Detection& seen : detections) seen.has_place = false;
   Overlaps overlaps = no_overlaps(tracks, 2);
   common(overlaps, 0, 2) = 60;
-  EXPECT_EQ(pairs(associated(tracks, sightings, overlaps)), (Pairs{{1, 2}}));
+  EXPECT_EQ(pairs(associated(tracks, detections, overlaps)), (Pairs{{1, 2}}));
 }
 
 }  // namespace

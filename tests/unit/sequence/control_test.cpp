@@ -20,7 +20,8 @@ std::vector<std::string> values(const Config& config) {
   return all;
 }
 
-ArmScore score(std::vector<float> of_arm, std::vector<float> of_present, const std::string& value = "1") {
+CandidateScore score(std::vector<float> of_arm, std::vector<float> of_present,
+                     const std::string& value = "1") {
   return {{"superpixels.count", value}, std::move(of_arm), std::move(of_present)};
 }
 
@@ -30,9 +31,9 @@ TEST(Options, AreFewEnoughToRead) {
 
 TEST(Arms, AreReadByTheirConfigurationAndChangeIt) {
   const Config config;
-  const std::vector<Arm> arms = arms_of(config, kSize);
+  const std::vector<OptionCandidate> arms = arms_of(config, kSize);
   ASSERT_GE(arms.size(), 8U);
-  for (const Arm& arm : arms) {
+  for (const OptionCandidate& arm : arms) {
     Config changed = config;
     set(changed, arm.option, arm.value);
     EXPECT_NO_THROW(validate(changed, kSize, true)) << arm.option;
@@ -48,8 +49,8 @@ TEST(Arms, OmitChangesWithoutEffectOrOutOfRange) {
   config.match.method = MatchMethod::window;
   config.objects.min_area = 80;
   const auto has = [&](const std::string& option, const std::string& value) {
-    const std::vector<Arm> arms = arms_of(config, kSize);
-    return std::ranges::find(arms, Arm{option, value}) != arms.end();
+    const std::vector<OptionCandidate> arms = arms_of(config, kSize);
+    return std::ranges::find(arms, OptionCandidate{option, value}) != arms.end();
   };
   EXPECT_FALSE(has("semi_global.penalty_large", "1.1"));
   EXPECT_FALSE(has("objects.min_area", "160"));
@@ -74,10 +75,10 @@ TEST(LeadOfAnArm, IsDefinedIfTheCurrentSettingsFindNothing) {
 }
 
 TEST(Halving, KeepsTheLeadingHalfAndNoMarginalLead) {
-  const std::vector<ArmScore> round{score({1.3F, 1.3F}, {1, 1}, "1"), score({1.5F, 1.5F}, {1, 1}, "2"),
-                                    score({0.9F, 0.9F}, {1, 1}, "3"), score({1.3F, 1.3F}, {1, 1}, "4"),
-                                    score({1.1F, 1.1F}, {1, 1}, "5")};
-  const std::vector<ArmScore> left = halved(round, 10);
+  const std::vector<CandidateScore> round{score({1.3F, 1.3F}, {1, 1}, "1"), score({1.5F, 1.5F}, {1, 1}, "2"),
+                                          score({0.9F, 0.9F}, {1, 1}, "3"), score({1.3F, 1.3F}, {1, 1}, "4"),
+                                          score({1.1F, 1.1F}, {1, 1}, "5")};
+  const std::vector<CandidateScore> left = halved(round, 10);
   ASSERT_EQ(left.size(), 3U);
   EXPECT_EQ(left[0].arm.value, "2");
   EXPECT_EQ(left[1].arm.value, "1");  // a tie keeps the earlier one
@@ -107,7 +108,7 @@ Seen play(const samples::Sample& sample, const FollowConfig& config, int frames,
   Follower follower(config, sample.calibration.rig, Exec::with_threads(threads));
   Seen seen;
   for (int k = 0; k < frames; ++k) {
-    Step step = follower.next(sample.pair(), {k * std::int64_t{100'000'000}});
+    TrackedFrame step = follower.next(sample.pair(), {k * std::int64_t{100'000'000}});
     if (step.control) seen.events.push_back(*step.control);
     if (step.control) seen.frames.push_back(k);
     seen.ids = std::move(step.ids);
@@ -182,10 +183,10 @@ TEST(RestoringArms, AreTheKnownValuesOfOptionsThatDiffer) {
   config.superpixels.count = 40;
   config.background.max_walls = 0;
   config.uniqueness.ratio = 5;
-  const std::vector<Arm> arms = restoring_arms(config, known, kSize);
-  EXPECT_EQ(arms, (std::vector<Arm>{{"uniqueness.ratio", "-1", true},
-                                    {"background.max_walls", "3", true},
-                                    {"superpixels.count", "250", true}}));
+  const std::vector<OptionCandidate> arms = restoring_arms(config, known, kSize);
+  EXPECT_EQ(arms, (std::vector<OptionCandidate>{{"uniqueness.ratio", "-1", true},
+                                                {"background.max_walls", "3", true},
+                                                {"superpixels.count", "250", true}}));
 }
 
 TEST(RestoringArms, RespectWhatTheUserKnowsOfTheScene) {
@@ -195,20 +196,20 @@ TEST(RestoringArms, RespectWhatTheUserKnowsOfTheScene) {
   config.match.min_disparity = 4;
   EXPECT_TRUE(of(config).empty());
   config.match.num_disparities = 16;
-  EXPECT_EQ(of(config), (std::vector<Arm>{{"match.num_disparities", "64", false}}));
+  EXPECT_EQ(of(config), (std::vector<OptionCandidate>{{"match.num_disparities", "64", false}}));
   Config pose;
   pose.ground.source = GroundSource::pose;
   pose.ground.known.camera_height_m = 1;
   EXPECT_TRUE(of(pose).empty());
-  const auto has_ground = [](const std::vector<Arm>& arms) {
-    return std::ranges::find(arms, "ground.source", &Arm::option) != arms.end();
+  const auto has_ground = [](const std::vector<OptionCandidate>& arms) {
+    return std::ranges::find(arms, "ground.source", &OptionCandidate::option) != arms.end();
   };
   EXPECT_FALSE(has_ground(arms_of(pose, kSize)));
   pose.ground.source = GroundSource::off;
   EXPECT_TRUE(has_ground(of(pose)));
   EXPECT_TRUE(has_ground(arms_of(pose, kSize)));
   Config robot;
-  robot.space.range = 10;
+  robot.obstacles.range = 10;
   EXPECT_TRUE(of(robot).empty());
 }
 
@@ -218,7 +219,7 @@ TEST(Differences, LeadBackToTheStart) {
   start.match.num_disparities = 16;
   Config now;  // everything set
   EXPECT_EQ(differences(now, start),
-            (std::vector<Arm>{{"match.num_disparities", "16"}, {"ground.source", "off"}}));
+            (std::vector<OptionCandidate>{{"match.num_disparities", "16"}, {"ground.source", "off"}}));
   start.match.method = MatchMethod::window;
   start.match.window_size = 15;  // not read by `now`
   EXPECT_EQ(differences(now, start).size(), 3U);
@@ -234,13 +235,13 @@ TEST(RestoringArms, BelongToThePresetWithFewestDifferences) {
 TEST(RestoringArms, NeedASignificantLeadButNoLargeOne) {
   ControlConfig config;
   config.window = 3;
-  ArmScore little = score({1.05F, 1.02F, 1.04F}, {1, 1, 1});
+  CandidateScore little = score({1.05F, 1.02F, 1.04F}, {1, 1, 1});
   EXPECT_FALSE(is_better(little, config));
   EXPECT_TRUE(halved({little}, 10).empty());
   little.arm.restores = true;
   EXPECT_TRUE(is_better(little, config));
   EXPECT_EQ(halved({little}, 10).size(), 1U);
-  ArmScore unsure = score({1.3F, 0.8F, 1.0F}, {1, 1, 1});
+  CandidateScore unsure = score({1.3F, 0.8F, 1.0F}, {1, 1, 1});
   unsure.arm.restores = true;
   EXPECT_FALSE(is_better(unsure, config));
 }
@@ -328,11 +329,11 @@ TEST(Follower, WithAnotherConfigurationItGoesOnFromACopy) {
   FollowConfig wrong = config;
   wrong.segmentation.objects.min_area = 60;
   Follower other = follower.with(wrong);
-  const Step tried = other.next(sample.pair(), stamp);
+  const TrackedFrame tried = other.next(sample.pair(), stamp);
   EXPECT_EQ(tried.index, 4);
   EXPECT_LT(tried.frame.objects.list.size(), 2U);
-  const Step step = follower.next(sample.pair(), stamp);
-  const Step expected = same.next(sample.pair(), stamp);
+  const TrackedFrame step = follower.next(sample.pair(), stamp);
+  const TrackedFrame expected = same.next(sample.pair(), stamp);
   for (int y = 0; y < step.ids.height(); ++y)
     for (int x = 0; x < step.ids.width(); ++x) ASSERT_EQ(step.ids(x, y), expected.ids(x, y));
 }
@@ -344,7 +345,7 @@ TEST(Controller, AnotherConfigurationBeginsTheSearchAnew) {
   int frames = 0;
   const auto until_set = [&] {
     for (int k = 0; k < 30; ++k) {
-      const Step step = follower.next(sample.pair(), {++frames * std::int64_t{100'000'000}});
+      const TrackedFrame step = follower.next(sample.pair(), {++frames * std::int64_t{100'000'000}});
       if (step.control) return step.control->arm.option;
     }
     return std::string("none");

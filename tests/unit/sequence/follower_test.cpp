@@ -33,11 +33,11 @@ std::string refused(Follower& follower, const StereoPair& pair, Stamp stamp) {
 TEST(Follower, AStaticCameraGivesStaticObjectsStableIds) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample), sample.calibration.rig);
-  const Step first = follower.next(sample.pair(), frame_stamp(1));
+  const TrackedFrame first = follower.next(sample.pair(), frame_stamp(1));
   ASSERT_GE(first.tracks.list.size(), 2U);
   EXPECT_EQ(first.index, 0);
   EXPECT_GT(first.map_from_camera.translation_m.z, 0.1);  // above the floor
-  Step last;
+  TrackedFrame last;
   for (int k = 2; k <= 6; ++k) last = follower.next(sample.pair(), frame_stamp(k));
   EXPECT_EQ(last.index, 5);
   ASSERT_EQ(last.tracks.list.size(), first.tracks.list.size());
@@ -67,7 +67,7 @@ TEST(Follower, UsesAGivenPoseUnchanged) {
   follower.next(sample.pair(), frame_stamp(1), std::nullopt, pose);
   Pose next = pose;
   next.translation_m.z = 3.5;
-  const Step step = follower.next(sample.pair(), frame_stamp(2), std::nullopt, next);
+  const TrackedFrame step = follower.next(sample.pair(), frame_stamp(2), std::nullopt, next);
   EXPECT_EQ(step.map_from_camera.translation_m, next.translation_m);
   EXPECT_NEAR(step.motion.now_from_before.translation_m.z, -0.5, 1e-12);
   EXPECT_FALSE(step.is_lost);
@@ -79,7 +79,7 @@ TEST(Follower, ContinuesFromTheLastGivenPose) {
   Pose pose;
   pose.translation_m = {1, 2, 3};
   follower.next(sample.pair(), frame_stamp(1), std::nullopt, pose);
-  Step step;
+  TrackedFrame step;
   for (int k = 2; k < 4; ++k) step = follower.next(sample.pair(), frame_stamp(k));
   EXPECT_NEAR(length(step.map_from_camera.translation_m - pose.translation_m), 0, 0.01);
 }
@@ -87,11 +87,11 @@ TEST(Follower, ContinuesFromTheLastGivenPose) {
 TEST(Follower, FindsItsTracksAgainAfterAPause) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample), sample.calibration.rig);
-  Step before;
+  TrackedFrame before;
   for (int k = 1; k <= 3; ++k) before = follower.next(sample.pair(), frame_stamp(k));
   ASSERT_FALSE(before.tracks.list.empty());
   follower.forget();
-  const Step after = follower.next(sample.pair(), frame_stamp(60));
+  const TrackedFrame after = follower.next(sample.pair(), frame_stamp(60));
   EXPECT_EQ(after.motion.refusal, MotionRefusal::none);
   EXPECT_LT(after.pose_covariance[0], 0.01);
   ASSERT_EQ(after.tracks.list.size(), before.tracks.list.size());
@@ -106,7 +106,7 @@ TEST(Follower, IsLostAfterAPauseThatEndsInTheDark) {
     Follower follower(config_for(sample), sample.calibration.rig);
     for (int k = 1; k <= 3; ++k) follower.next(sample.pair(), frame_stamp(k));
     if (has_gap) follower.forget();
-    const Step dark = follower.next(StereoPair::from(black, black), frame_stamp(4));
+    const TrackedFrame dark = follower.next(StereoPair::from(black, black), frame_stamp(4));
     EXPECT_NE(dark.motion.refusal, MotionRefusal::none);
     EXPECT_EQ(dark.pose_covariance[0] >= 1, has_gap);
   }
@@ -131,18 +131,18 @@ TEST(Follower, APersonBeforeTheLensForFiveSecondsCostsNoIds) {
   }
   const StereoPair covered = StereoPair::from(left, right);
   Follower follower(config_for(sample), sample.calibration.rig);
-  Step before;
+  TrackedFrame before;
   int frame = 0;
   for (int k = 0; k < 5; ++k) before = follower.next(sample.pair(), frame_stamp(frame++));
   ASSERT_GE(before.tracks.list.size(), 2U);
   for (int k = 0; k < 50; ++k) {
-    const Step dark = follower.next(covered, frame_stamp(frame++));
+    const TrackedFrame dark = follower.next(covered, frame_stamp(frame++));
     for (const Track& track : before.tracks.list) {
       EXPECT_TRUE(std::ranges::any_of(dark.tracks.list, [&](const Track& t) { return t.id == track.id; }))
           << number(track.id) << " ended after " << k << " frames";
     }
   }
-  Step after;
+  TrackedFrame after;
   for (int k = 0; k < 5; ++k) after = follower.next(sample.pair(), frame_stamp(frame++));
   EXPECT_FALSE(after.is_lost);
   EXPECT_LT(length(after.map_from_camera.translation_m - before.map_from_camera.translation_m), 0.02);
@@ -187,7 +187,7 @@ TEST(Follower, FollowsACameraWithoutObjects) {
   config.segmentation.objects.min_area = 100;  // % of the image
   Follower follower(config, sample.calibration.rig);
   for (int k = 1; k < 4; ++k) {
-    const Step step = follower.next(sample.pair(), frame_stamp(k));
+    const TrackedFrame step = follower.next(sample.pair(), frame_stamp(k));
     EXPECT_TRUE(step.frame.objects.list.empty());
     EXPECT_TRUE(step.tracks.list.empty());
     EXPECT_EQ(step.ids(0, 0), TrackId::none);
@@ -199,7 +199,7 @@ TEST(Follower, WithoutARigThereAreIdsButNoPositions) {
   Follower follower(config_for(sample));
   std::vector<TrackId> first;
   for (int k = 1; k <= 4; ++k) {
-    const Step step = follower.next(sample.pair(), frame_stamp(k));
+    const TrackedFrame step = follower.next(sample.pair(), frame_stamp(k));
     EXPECT_EQ(step.motion.refusal, MotionRefusal::no_rig);
     std::vector<TrackId> ids;
     for (const Track& track : step.tracks.list) {

@@ -49,7 +49,7 @@ class Excursion {
     constexpr double kRad = 30 * kTurn / 360;
     unsure_m2 += 1;
     unsure_rad2 += kRad * kRad;
-    for (Track& track : tracks_.tracks.list) {  // as done by tied_to_key()
+    for (Track& track : tracks_.tracks.list) {  // as done by rebased_to_keyframe()
       for (const std::size_t k : {0U, 4U, 8U}) track.covariance_m2[k] += 1;
     }
     is_new_segment_ = true;
@@ -121,7 +121,7 @@ class Excursion {
     frame.ids = std::as_const(ids).view();
     frame.disparity_px = std::as_const(disparity).view();
     frame.rig = DrawnRoom::kRig;
-    Landmarked step = advance_landmarks(std::move(state), frame, config);
+    LandmarkUpdate step = advance_landmarks(std::move(state), frame, config);
     state = std::move(step.state);
     for (LandmarkEvent& event : step.events) events.push_back(std::move(event));
     for (const LandmarkOfTrack& t : step.tracks) {
@@ -357,7 +357,7 @@ TEST(Landmarks, HaveTheUncertaintyOfAPoseAlongTheMapsAxes) {
   EXPECT_NEAR(state.located.covariance[10], 0.0025, 1e-12);
   EXPECT_NEAR(state.located.covariance[15], 0.0009, 1e-12);
   // Includes the uncertainty of relocalisation; roll and pitch are odometry's.
-  Located located = state.located;
+  MapLocation located = state.located;
   located.covariance[0] += 1;
   located.covariance[3] = located.covariance[12] = 0.002;
   const Covariance6 camera = camera_covariance(located, frame.pose_covariance);
@@ -571,7 +571,7 @@ TEST(Maps, OfOneRoomAreMergedWhateverTheirOrigins) {
   second.odom_from_map = camera_at(0, 0, 0) * inverse(camera_at(1, -3, 2));
   second.lap(room);
   second.lap(room, 1);
-  const Merged merged = merge(first.state.map, second.state.map, std::nullopt, {});
+  const MapMerge merged = merge(first.state.map, second.state.map, std::nullopt, {});
   ASSERT_TRUE(merged.map_from_other.has_value());
   EXPECT_GE(merged.pairs.size(), 8U);
   EXPECT_EQ(merged.map.list.size(),

@@ -62,7 +62,7 @@ const std::vector<TourFrame>& frames() {
       TourFrame frame;
       frame.map_from_camera = pose_in(folder / "pose.txt");
       frame.rig = *io::load_calibration(folder / "calib.txt").rig;
-      io::PicturePair pair = io::load_pair(folder / "left.png", folder / "right.png");
+      io::LoadedPair pair = io::load_pair(folder / "left.png", folder / "right.png");
       frame.rgb = std::move(pair.left.rgb);
       frame.left = std::move(pair.left.gray);
       frame.right = std::move(pair.right.gray);
@@ -141,8 +141,8 @@ Outcome drive(double drift, double turn_deg, LandmarkMap known, int first_frame,
     std::vector<support::TrueTracks::Seen> seen;
     std::map<int, std::size_t> at_of;
     for (auto& [thing, s] : sums) {
-      constexpr double kLeast = 80;
-      if (s[2] < kLeast || depths[thing].size() < 40) continue;
+      constexpr double kMin = 80;
+      if (s[2] < kMin || depths[thing].size() < 40) continue;
       auto& d = depths[thing];
       std::nth_element(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2), d.end());
       const auto p = f.rig.point_in_camera_m(static_cast<float>(s[0] / s[2]), static_cast<float>(s[1] / s[2]),
@@ -188,7 +188,7 @@ Outcome drive(double drift, double turn_deg, LandmarkMap known, int first_frame,
     frame.left_rgb = f.rgb.view();
     frame.rig = f.rig;
     const auto began = std::chrono::steady_clock::now();
-    Landmarked step = advance_landmarks(std::move(state), frame, config);
+    LandmarkUpdate step = advance_landmarks(std::move(state), frame, config);
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     state = std::move(step.state);
     for (const LandmarkEvent& event : step.events) {
@@ -231,8 +231,8 @@ Outcome follow() {
   double seconds = 0;
   for (std::size_t i = 0; i < frames().size(); ++i) {
     const TourFrame& f = frames()[i];
-    const Step step = follower.next(StereoPair::from(f.left.view(), f.right.view(), f.rgb.view()),
-                                    Stamp{static_cast<std::int64_t>(i) * 200'000'000});
+    const TrackedFrame step = follower.next(StereoPair::from(f.left.view(), f.right.view(), f.rgb.view()),
+                                            Stamp{static_cast<std::int64_t>(i) * 200'000'000});
     if (i == 0) map_from_world = step.map_from_camera * inverse(f.map_from_camera);
     for (int y = 0; y < step.ids.height(); ++y) {
       for (int x = 0; x < step.ids.width(); ++x) {
@@ -247,7 +247,7 @@ Outcome follow() {
     };
     const LandmarkFrame frame = landmark_frame(step, f.rig, f.left.view(), f.rgb.view());
     const auto began = std::chrono::steady_clock::now();
-    Landmarked marked = advance_landmarks(std::move(state), frame, config);
+    LandmarkUpdate marked = advance_landmarks(std::move(state), frame, config);
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     state = std::move(marked.state);
     for (const LandmarkOfTrack& t : marked.tracks) {

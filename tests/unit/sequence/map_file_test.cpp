@@ -53,7 +53,7 @@ Landmark landmark(std::int64_t id, Point3 at) {
 struct Drive {
   Tracks tracks;
   LandmarkFrame frame;
-  Landmarked step;
+  LandmarkUpdate step;
 
   explicit Drive(MapFile& file) {
     step.state = begin_landmarks(file.load(), file.begin_run("frames/", {0}));
@@ -183,7 +183,7 @@ TEST(MapFile, HasPosesAndEdgesWithUncertaintiesAlongTheirOwnAxesAndExactStamps) 
   MapFile file = MapFile::open(folder.path() / "room.db", MapMode::update);
   const Pose quarter = rotation_about({0, 0, std::numbers::pi / 2});
   Tracks tracks;
-  Landmarked step;
+  LandmarkUpdate step;
   step.state = begin_landmarks({}, file.begin_run("frames/", {0}), quarter);
   LandmarkFrame frame;
   frame.tracks = &tracks;

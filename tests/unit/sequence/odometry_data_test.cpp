@@ -33,7 +33,7 @@ struct Drive {
   int black = 0;           // every n-th frame is black
 };
 
-struct Measured {
+struct Measurement {
   TrajectoryError error;
   double nees = 0;          // median, of the motion since the keyframe
   double milliseconds = 0;  // of processor time, median
@@ -46,7 +46,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Measured measure(const Drive& drive) {
+Measurement measure(const Drive& drive) {
   const fs::path folder = collection() / drive.folder;
   const auto source = io::open_sequence(folder.string(), {});
   io::Trajectory truth = io::load_trajectory(folder / drive.truth);
@@ -55,7 +55,7 @@ Measured measure(const Drive& drive) {
   const std::unique_ptr<io::MotionPriors> wheels =
       drive.by_wheels ? io::load_odometry(folder / "odometry.csv", folder) : nullptr;
 
-  Measured all;
+  Measurement all;
   std::vector<TimedPose> ours;
   std::vector<double> nees;
   std::vector<double> times;
@@ -82,7 +82,7 @@ Measured measure(const Drive& drive) {
     if (wheels && k > 0) prior = wheels->between(ours.back().stamp, frame->stamp, from_level);
     const std::clock_t start = std::clock();
     const OdometryStep step =
-        advance_odometry(state, left, scene.disparity, scene.confidence, {}, *source->rig(), prior, {});
+        advance_odometry(state, {left, scene.disparity, scene.confidence, {}}, *source->rig(), prior, {});
     times.push_back(1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     ours.push_back({frame->stamp, step.state.map_from_camera});
     if (step.motion.refusal != MotionRefusal::none) ++all.refused;
@@ -120,7 +120,7 @@ class OdometryData : public testing::Test {
 
 TEST_F(OdometryData, DriftsByAtMostOneAndAHalfPercentOnTheRenderedDrives) {
   for (const char* folder : {"rendered/dev/sequences/dev_seqA", "rendered/dev/sequences/dev_seqB"}) {
-    const Measured m = measure({.folder = folder, .truth = ""});
+    const Measurement m = measure({.folder = folder, .truth = ""});
     EXPECT_LE(m.error.end_drift, 0.015) << folder;
     EXPECT_EQ(m.refused, 0) << folder;
     EXPECT_LE(m.nees, 10) << folder;
@@ -128,26 +128,26 @@ TEST_F(OdometryData, DriftsByAtMostOneAndAHalfPercentOnTheRenderedDrives) {
 }
 
 TEST_F(OdometryData, DriftsByAtMostOnePercentOnTheTourAndWheelsCarryItThroughTheDark) {
-  const Measured alone = measure({.folder = "rendered/tour_train", .truth = ""});
+  const Measurement alone = measure({.folder = "rendered/tour_train", .truth = ""});
   EXPECT_LE(alone.error.end_drift, 0.010);
   EXPECT_LE(alone.error.end_error_rad * kDegrees, 1.5);
   EXPECT_EQ(alone.refused, 0);
   EXPECT_LE(alone.nees, 10);
-  const Measured wheels = measure({.folder = "rendered/tour_train", .truth = "", .by_wheels = true});
+  const Measurement wheels = measure({.folder = "rendered/tour_train", .truth = "", .by_wheels = true});
   EXPECT_LE(wheels.error.end_drift, 0.010);
-  const Measured dark =
+  const Measurement dark =
       measure({.folder = "rendered/tour_train", .truth = "", .by_wheels = true, .black = 10});
   EXPECT_EQ(dark.refused, 10);
   EXPECT_LE(dark.error.ate_rmse_m, 1.5 * wheels.error.ate_rmse_m);
 }
 
 TEST_F(OdometryData, DriftsByAtMostOnePointTwoPercentOnTheStreet) {
-  const Measured m = measure({.folder = "real/sequences/kitti_odometry_04", .truth = "poses.txt"});
+  const Measurement m = measure({.folder = "real/sequences/kitti_odometry_04", .truth = "poses.txt"});
   EXPECT_LE(m.error.end_drift, 0.012);
 }
 
 TEST_F(OdometryData, StandsStillIfTheRigDoes) {
-  const Measured m = measure(
+  const Measurement m = measure(
       {.folder = "real/sequences/euroc_V1_01_standstill", .truth = "groundtruth_left_camera_tum.txt"});
   EXPECT_LE(m.error.end_error_m, 0.002);
   EXPECT_LE(m.error.end_error_rad * kDegrees, 0.15);

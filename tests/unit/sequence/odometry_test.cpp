@@ -34,7 +34,7 @@ double degrees_apart(const Pose& a, const Pose& b) {
 
 OdometryStep step(const OdometryState& state, const Seen& seen,
                   const std::optional<MotionPrior>& prior = std::nullopt, const OdometryConfig& config = {}) {
-  return advance_odometry(state, seen.left, seen.disparity, {}, {}, room::kRig, prior, config);
+  return advance_odometry(state, {seen.left, seen.disparity, {}, {}}, room::kRig, prior, config);
 }
 
 Seen all_of(Gray value) {
@@ -117,7 +117,7 @@ TEST(Odometry, UsesNoCornersOfMovingObjects) {
   Image<std::uint8_t> moving(room::kSize);
   moving.fill(255);
   const OdometryStep none =
-      advance_odometry(begin_odometry({}), first.left, first.disparity, {}, moving, room::kRig, {}, {});
+      advance_odometry(begin_odometry({}), {first.left, first.disparity, {}, moving}, room::kRig, {}, {});
   EXPECT_EQ(none.motion.refusal, MotionRefusal::few_points);
   EXPECT_FALSE(none.motion.is_new_keyframe);
 }
@@ -127,12 +127,12 @@ TEST(Odometry, UsesNoCornersOfUncertainDisparity) {
   Image<float> confidence(room::kSize);
   confidence.fill(0.1F);
   EXPECT_EQ(
-      advance_odometry(begin_odometry({}), first.left, first.disparity, confidence, {}, room::kRig, {}, {})
+      advance_odometry(begin_odometry({}), {first.left, first.disparity, confidence, {}}, room::kRig, {}, {})
           .motion.refusal,
       MotionRefusal::few_points);
   confidence.fill(0.9F);
   EXPECT_EQ(
-      advance_odometry(begin_odometry({}), first.left, first.disparity, confidence, {}, room::kRig, {}, {})
+      advance_odometry(begin_odometry({}), {first.left, first.disparity, confidence, {}}, room::kRig, {}, {})
           .motion.refusal,
       MotionRefusal::none);
 }
@@ -147,7 +147,7 @@ TEST(Odometry, ReportsWhyAFrameHasNoMotion) {
   EXPECT_EQ(step(state, look({}), {}, off).motion.refusal, MotionRefusal::off);
 
   const Seen seen = look({});
-  EXPECT_EQ(advance_odometry(state, seen.left, seen.disparity, {}, {}, StereoRig{}, {}, {}).motion.refusal,
+  EXPECT_EQ(advance_odometry(state, {seen.left, seen.disparity, {}, {}}, StereoRig{}, {}, {}).motion.refusal,
             MotionRefusal::no_rig);
 
   OdometryConfig strict;
@@ -186,11 +186,11 @@ TEST(Odometry, RefusesNoiseATornImageAndABadStamp) {
   DisparityMap map{Image<float>(Size{8, 8}), Image<Reject>(Size{8, 8})};
   map.disparity_px.fill(3);
   map.reject.fill(Reject::none);
-  EXPECT_EQ(advance_odometry(state, stamp, map, {}, {}, room::kRig, {}, {}).motion.refusal,
+  EXPECT_EQ(advance_odometry(state, {stamp, map, {}, {}}, room::kRig, {}, {}).motion.refusal,
             MotionRefusal::few_points);
-  EXPECT_EQ(advance_odometry(begin_odometry({}), stamp, map, {}, {}, room::kRig, {}, {}).motion.refusal,
+  EXPECT_EQ(advance_odometry(begin_odometry({}), {stamp, map, {}, {}}, room::kRig, {}, {}).motion.refusal,
             MotionRefusal::few_points);
-  EXPECT_EQ(advance_odometry(state, {}, {}, {}, {}, room::kRig, {}, {}).motion.refusal,
+  EXPECT_EQ(advance_odometry(state, {{}, {}, {}, {}}, room::kRig, {}, {}).motion.refusal,
             MotionRefusal::few_points);
 }
 

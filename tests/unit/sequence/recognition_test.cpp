@@ -34,7 +34,7 @@ TEST(Recognition, IsVetoedByPositionSizeAndHeightAndDecidedByColours) {
   LandmarkMap map;
   map.list = {known(1, {1, 0, 0.25}, 5)};
   const LandmarksConfig config;
-  const Located here{};
+  const MapLocation here{};
   const auto is_known = [&](const Candidate& candidate) {
     return recognise(map, {candidate}, here, {}, config).pairs.size() == 1;
   };
@@ -53,7 +53,7 @@ TEST(Recognition, IsVetoedByPositionSizeAndHeightAndDecidedByColours) {
   EXPECT_FALSE(is_known(high));
   EXPECT_TRUE(recognise(map, {same}, here, {LandmarkId{1}}, config).pairs.empty());
   // With an uncertain pose, a more distant object may be the same.
-  Located unsure = here;
+  MapLocation unsure = here;
   for (const std::size_t i : {0U, 5U, 10U}) unsure.covariance[i] = 0.04;
   EXPECT_EQ(recognise(map, {seen(7, {1.5, 0, 0.25}, 5)}, unsure, {}, config).pairs.size(), 1U);
 }
@@ -100,7 +100,7 @@ TEST(Relocation, NeedsTwoPairsGivenAGuess) {
                                           seen(12, inverse(truth)({2.5, 1, 0.25}), 2)};
   EXPECT_EQ(relocate(map, candidates, {}).refusal, RecognitionRefusal::no_candidates);
 
-  Located guess;
+  MapLocation guess;
   for (const std::size_t i : {0U, 5U, 10U}) guess.covariance[i] = 1;
   guess.covariance[15] = 0.27;
   const Recognition found = relocate(map, candidates, {}, guess);
@@ -148,7 +148,7 @@ TEST(Maps, CopiesAreMergedWithoutDoubleCounting) {
   // Each copy has assigned this id to a new object since.
   room.list.push_back(known(room.next++, {6, -3, 0.25}, 30));
   copy.list.push_back(known(copy.next++, {-6, -3, 0.25}, 40));
-  const auto check = [](const Merged& merged) {
+  const auto check = [](const MapMerge& merged) {
     const std::vector<Landmark>& list = merged.map.list;
     ASSERT_EQ(list.size(), 6U);
     EXPECT_EQ(merged.pairs.size(), 4U);
@@ -164,7 +164,7 @@ TEST(Maps, CopiesAreMergedWithoutDoubleCounting) {
   };
   check(merge_copies(room, copy, {}));
   check(merge_copies(copy, room, {}));
-  const Merged same = merge_copies(room, room, {});
+  const MapMerge same = merge_copies(room, room, {});
   EXPECT_EQ(same.map.list.size(), room.list.size());
   EXPECT_EQ(same.map.list[3].seen, 20);
 }
@@ -184,7 +184,7 @@ TEST(Maps, ALandmarkThatIsInTheOtherMapIsNotGone) {
   theirs.list[1].size.height_m = ours.list[1].size.height_m + 0.1;
   theirs.list[1].looks[0].octant = 3;
   theirs.list[1].looks[0].pixels = 900;
-  const Merged merged = merge(ours, theirs, Pose{}, {});
+  const MapMerge merged = merge(ours, theirs, Pose{}, {});
   ASSERT_EQ(merged.map.list.size(), 4U);
   const Landmark& both = merged.map.list[1];
   EXPECT_FALSE(both.is_gone);

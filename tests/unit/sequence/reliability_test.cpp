@@ -26,7 +26,7 @@ Reliability last_of(const samples::Sample& sample, const StereoPair& pair, int f
   FollowConfig config;
   config.segmentation = sample.suited();
   Follower follower(config, sample.calibration.rig);
-  Step step;
+  TrackedFrame step;
   for (int k = 0; k < frames; ++k) step = follower.next(pair, {k * std::int64_t{100'000'000}});
   return step.reliability;
 }
@@ -74,8 +74,8 @@ TEST(Reliability, ARightImageOfAnotherMomentLowersThePhotometricWitness) {
 
 /// A step with one object of 10×10 px, 2 m away, and its track.
 struct OneObject {
-  Step step;
-  Warped warped{{}, Image<TrackId>(kSize, TrackId::none, {}), Image<float>(kSize, kNan, {})};
+  TrackedFrame step;
+  MaskPrediction warped{{}, Image<TrackId>(kSize, TrackId::none, {}), Image<float>(kSize, kNan, {})};
 
   explicit OneObject(int expected_at = 5) {
     step.index = 5;
@@ -108,7 +108,8 @@ struct OneObject {
   [[nodiscard]] Reliability judged(const Reliability& before = {}, const LaserScan* scan = nullptr,
                                    bool looks_for_floor = false) const {
     const Image<Gray> none(kSize, Gray{0}, {});
-    return judge(step, warped, {StereoPair::from(none, none), {}, kRig, looks_for_floor, scan}, before);
+    return assess_reliability(step, warped, {StereoPair::from(none, none), {}, kRig, looks_for_floor, scan},
+                              before);
   }
 };
 
@@ -123,11 +124,11 @@ TEST(TemporalWitness, AnUnexpectedObjectHalvesIt) {
   Object second = one.step.frame.objects.list[0];
   second.id = ObjectId{2};
   one.step.frame.objects.list.push_back(second);
-  Track founded = one.step.tracks.list[0];
-  founded.id = TrackId{2};
-  founded.object = ObjectId{2};
-  founded.recent = 1;
-  one.step.tracks.list.push_back(founded);
+  Track new_track = one.step.tracks.list[0];
+  new_track.id = TrackId{2};
+  new_track.object = ObjectId{2};
+  new_track.recent = 1;
+  one.step.tracks.list.push_back(new_track);
   for (int y = 5; y < 15; ++y)
     for (int x = 25; x < 35; ++x) one.step.frame.objects.labels(x, y) = ObjectId{2};
   EXPECT_NEAR(one.judged().witnesses.temporal.value(), 0.5, 1e-6);

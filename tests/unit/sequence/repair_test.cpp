@@ -11,7 +11,7 @@ namespace {
 struct Row {
   MergeTree tree;
   Superpixels superpixels;
-  Warped warped;
+  MaskPrediction warped;
   Tracks tracks;
 
   Row() {

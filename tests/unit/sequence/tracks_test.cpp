@@ -44,11 +44,11 @@ TEST(Tracks, HaveTheUncertaintyOfTheLinkToANewKeyframe) {
   key[35] = 0.01;  // about z
   const Pose camera{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 1}};
   const Tracks before{{standing({0, 2, 1})}, 2, {}, false};
-  const Track same = tied_to_key(before, camera, {}, false).list[0];
+  const Track same = rebased_to_keyframe(before, camera, {}, false).list[0];
   EXPECT_EQ(same.as_static.covariance_m2, before.list[0].as_static.covariance_m2);
   EXPECT_EQ(same.places.size(), 4U);
 
-  const Track tied = tied_to_key(before, camera, key, true).list[0];
+  const Track tied = rebased_to_keyframe(before, camera, key, true).list[0];
   EXPECT_NEAR(tied.as_static.covariance_m2[0], 0.01 + 0.04 + 4 * 0.01, 1e-12);  // 2 m away, turned
   EXPECT_NEAR(tied.as_static.covariance_m2[4], 0.01, 1e-12);
   EXPECT_NEAR(tied.as_moving.covariance[0], 0.01 + 0.04 + 4 * 0.01, 1e-12);
@@ -130,21 +130,21 @@ TEST(SeenAnew, TheVisibleSurfaceMovesAroundTheCentre) {
   const double shift = nearer_surface::kShare * 0.6;
   const double sigma = nearer_surface::kSigma * 0.4;
   const Filter3 before{{1, 0, 0.5}, variances(0.01)};
-  const Filter3 nearer = seen_anew(before, extent, {3, 0, 0.5}, {2, 0, 0.5});
+  const Filter3 nearer = moved_viewpoint(before, extent, {3, 0, 0.5}, {2, 0, 0.5});
   EXPECT_EQ(nearer.position_m, before.position_m);  // from the same side
   EXPECT_EQ(nearer.covariance_m2, before.covariance_m2);
-  const Filter3 quarter = seen_anew(before, extent, {3, 0, 0.5}, {1, 3, 0.5});
+  const Filter3 quarter = moved_viewpoint(before, extent, {3, 0, 0.5}, {1, 3, 0.5});
   EXPECT_NEAR(quarter.position_m.x, 1 - shift, 1e-7);
   EXPECT_NEAR(quarter.position_m.y, shift, 1e-7);
   EXPECT_EQ(quarter.position_m.z, 0.5);
   EXPECT_NEAR(quarter.covariance_m2[0], 0.01 + 2 * sigma * sigma, 1e-7);  // a chord of √2
-  const Filter3 behind = seen_anew(before, extent, {3, 0, 0.5}, {-1, 0, 0.5});
+  const Filter3 behind = moved_viewpoint(before, extent, {3, 0, 0.5}, {-1, 0, 0.5});
   EXPECT_NEAR(behind.position_m.x, 1 - 2 * shift, 1e-7);
   EXPECT_NEAR(behind.covariance_m2[8], 0.01 + 4 * sigma * sigma, 1e-7);
   // Across the vertical axis, though the azimuth turns by 180°.
-  const Filter3 above = seen_anew(before, extent, {1.02, 0, 2.5}, {0.98, 0, 2.5});
+  const Filter3 above = moved_viewpoint(before, extent, {1.02, 0, 2.5}, {0.98, 0, 2.5});
   EXPECT_NEAR(above.position_m.x, 1 - 0.02 * shift, 1e-4);
-  EXPECT_EQ(seen_anew(before, extent, {3, 0, 0.5}, before.position_m).position_m, before.position_m);
+  EXPECT_EQ(moved_viewpoint(before, extent, {3, 0, 0.5}, before.position_m).position_m, before.position_m);
 }
 
 TEST(DriftOf, IsTheSlopeOfTheStraightLine) {
@@ -170,8 +170,8 @@ TEST(Likeness, IsOneForEqualAndZeroForDisjointColours) {
 
 // ---- tracks ----
 
-Sighting sighting_at(std::int32_t object, Point3 position_m, float confidence = 0.9F) {
-  Sighting seen;
+Detection sighting_at(std::int32_t object, Point3 position_m, float confidence = 0.9F) {
+  Detection seen;
   seen.object = ObjectId{object};
   seen.has_place = true;
   seen.position_in_camera_m = position_m;
@@ -203,15 +203,15 @@ struct Story {
     overlaps.common.assign(count * static_cast<std::size_t>(objects), 0);
     return overlaps;
   }
-  void step(const std::vector<Sighting>& sightings, const Overlaps& overlaps, bool is_lost = false,
+  void step(const std::vector<Detection>& detections, const Overlaps& overlaps, bool is_lost = false,
             const Pose& pose = {}) {
     const Stamp now = seconds(0.1 * ++frame);
     const auto matches =
-        is_lost ? std::vector<Match>{} : associate(tracks, sightings, overlaps, pose, {}, now, config);
-    tracks = advance_tracks(tracks, sightings, matches, overlaps, pose, {}, is_lost, now, config);
+        is_lost ? std::vector<Assignment>{} : associate(tracks, detections, overlaps, {now, pose}, config);
+    tracks = advance_tracks(tracks, detections, matches, overlaps, {now, pose, {}, is_lost}, config);
   }
-  void step(const std::vector<Sighting>& sightings) {
-    step(sightings, plain(static_cast<int>(sightings.size())));
+  void step(const std::vector<Detection>& detections) {
+    step(detections, plain(static_cast<int>(detections.size())));
   }
   [[nodiscard]] std::vector<std::int64_t> ids() const {
     std::vector<std::int64_t> found;
@@ -255,9 +255,9 @@ TEST(Tracks, FiveHundredObjectsInAFrameKeepTheirIds) {
   const auto at = [](std::int32_t thing) { return Point3{0.4 * (thing % 25), 0.4 * (thing / 25), 6}; };
   Story story;
   for (const std::int32_t stride : {1, 3, 7, 9}) {  // in each frame in another order
-    std::vector<Sighting> sightings;
-    for (std::int32_t i = 0; i < kMany; ++i) sightings.push_back(sighting_at(i + 1, at(i * stride % kMany)));
-    story.step(sightings);
+    std::vector<Detection> detections;
+    for (std::int32_t i = 0; i < kMany; ++i) detections.push_back(sighting_at(i + 1, at(i * stride % kMany)));
+    story.step(detections);
     ASSERT_EQ(story.tracks.list.size(), std::size_t{kMany}) << stride;
     for (std::int32_t thing = 0; thing < kMany; ++thing) {
       const Track& track = story.tracks.list[static_cast<std::size_t>(thing)];
@@ -336,7 +336,7 @@ TEST(Tracks, AReappearingObjectKeepsItsId) {
 TEST(Tracks, AverageThePositionOfAStaticObject) {
   Story story;
   for (int k = 0; k < 40; ++k) {
-    Sighting seen = sighting_at(1, {k % 2 == 0 ? 0.03 : -0.03, 0, 2});
+    Detection seen = sighting_at(1, {k % 2 == 0 ? 0.03 : -0.03, 0, 2});
     seen.steady_in_camera_m2 = variances(2e-4);
     story.step({seen});
   }
@@ -350,7 +350,7 @@ TEST(Tracks, AverageThePositionOfAStaticObject) {
 
 TEST(Tracks, StateTheErrorThatPersistsHoweverOftenTheyAreSeen) {
   Story story;
-  Sighting seen = sighting_at(1, {0, 0, 2});
+  Detection seen = sighting_at(1, {0, 0, 2});
   seen.steady_in_camera_m2 = variances(9e-4);
   for (int k = 0; k < 50; ++k) story.step({seen});
   const Track& track = story.only();
@@ -405,7 +405,7 @@ TEST(Tracks, ClippedOrUncertainObjectsAreNotMoving) {
   for (const bool is_cut : {true, false}) {
     Story story;
     for (int k = 0; k < 15; ++k) {
-      Sighting seen = sighting_at(1, {0.04 * k, 0, 2}, is_cut || k == 0 ? 0.9F : 0.3F);
+      Detection seen = sighting_at(1, {0.04 * k, 0, 2}, is_cut || k == 0 ? 0.9F : 0.3F);
       seen.is_cut = is_cut;
       story.step({seen});
       EXPECT_FALSE(story.only().is_moving) << k;
@@ -418,9 +418,9 @@ TEST(Tracks, IfMostObjectsMoveAtOnceTheCameraIsSuspected) {
   Story story;
   bool was_suspect = false;
   for (int k = 0; k < 12; ++k) {
-    std::vector<Sighting> sightings;
-    for (int i = 0; i < 3; ++i) sightings.push_back(sighting_at(i + 1, {i + 0.04 * k, 0, 2}));
-    story.step(sightings);
+    std::vector<Detection> detections;
+    for (int i = 0; i < 3; ++i) detections.push_back(sighting_at(i + 1, {i + 0.04 * k, 0, 2}));
+    story.step(detections);
     was_suspect = was_suspect || story.tracks.odometry_suspect;
     for (const Track& track : story.tracks.list) EXPECT_FALSE(track.is_moving);
   }
@@ -442,8 +442,8 @@ TEST(Tracks, AMovingCameraDoesNotMoveObjects) {
   for (int k = 0; k < 15; ++k) {
     Pose pose = rotation_about({0, 0.02 * k, 0});
     pose.translation_m = {0, 0, 0.05 * k};
-    const std::vector sightings{sighting_at(1, inverse(pose)({0.3, 0.1, 3}))};
-    story.step(sightings, story.plain(1), false, pose);
+    const std::vector detections{sighting_at(1, inverse(pose)({0.3, 0.1, 3}))};
+    story.step(detections, story.plain(1), false, pose);
   }
   EXPECT_FALSE(story.only().is_moving);
   EXPECT_NEAR(story.only().position_m.x, 0.3, 1e-3);
@@ -463,7 +463,7 @@ TEST(Tracks, FollowTheVisibleSurfaceAroundAnObject) {
       story.step({}, story.plain(0), false, pose);
       continue;
     }
-    Sighting seen = sighting_at(1, {});
+    Detection seen = sighting_at(1, {});
     const Point3 visible = nearer_surface::kShare * double{seen.extent_m.x} * towards;
     seen.position_in_camera_m = inverse(pose)(visible);
     story.step({seen}, story.plain(k == 0 ? 0 : 1), false, pose);
@@ -480,7 +480,7 @@ TEST(Tracks, JoinedOnesSurviveAndKeepTheirPositions) {
   for (int k = 0; k < 30; ++k) {
     Overlaps overlaps = story.plain(1);
     overlaps.common = {90, 95};
-    Sighting both = sighting_at(1, {0.15, 0, 2});
+    Detection both = sighting_at(1, {0.15, 0, 2});
     both.pixel_count = 200;
     story.step({both}, overlaps);
     ASSERT_EQ(story.ids(), (std::vector<std::int64_t>{1, 2}));
@@ -503,7 +503,7 @@ TEST(Tracks, AnObjectInFrontOfTwoIsANewOneAndHidesThem) {
   Overlaps overlaps = story.plain(1);
   overlaps.common = {90, 95};
   overlaps.nearer = {85, 90};  // the image shows something nearer than the tracks there
-  Sighting front = sighting_at(1, {0.1, 0, 1.5});
+  Detection front = sighting_at(1, {0.1, 0, 1.5});
   front.pixel_count = 800;
   EXPECT_TRUE(joined_objects(story.tracks, overlaps).empty());
   story.step({front}, overlaps);
@@ -521,7 +521,7 @@ TEST(Tracks, AnObjectThatCoversTwoOfThemCreatesNone) {
   for (int k = 0; k < 3; ++k) story.step({sighting_at(1, {0, 0, 2}), sighting_at(2, {0.3, 0, 2})});
   Overlaps overlaps = story.plain(1);
   overlaps.common = {90, 95};
-  Sighting both = sighting_at(1, {0.15, 0, 2});
+  Detection both = sighting_at(1, {0.15, 0, 2});
   both.look = {};
   both.look[5] = both.look[60] = 1;  // similar to neither: it gets no id
   both.pixel_count = 400;
@@ -538,9 +538,9 @@ TEST(Tracks, PiecesCreateNoTracksAtFirst) {
     Overlaps overlaps = story.plain(2);
     overlaps.common[0] = 45;
     overlaps.common[1] = 45;
-    std::vector sightings{sighting_at(1, {-0.02, 0, 2}), sighting_at(2, {0.02, 0, 2})};
-    for (Sighting& seen : sightings) seen.pixel_count = 50;
-    story.step(sightings, overlaps);
+    std::vector detections{sighting_at(1, {-0.02, 0, 2}), sighting_at(2, {0.02, 0, 2})};
+    for (Detection& seen : detections) seen.pixel_count = 50;
+    story.step(detections, overlaps);
   };
   for (int k = 0; k < 5; ++k) {
     in_pieces();
@@ -593,7 +593,7 @@ TEST(Tracks, EndIfTheCameraIsLostForLong) {
 
 TEST(Tracks, WithoutPositionsAreFollowedByTheirMasks) {
   Story story;
-  Sighting seen = sighting_at(1, {});
+  Detection seen = sighting_at(1, {});
   seen.has_place = false;
   for (int k = 0; k < 5; ++k) {
     Overlaps overlaps = story.plain(1);
@@ -627,14 +627,14 @@ struct Picture {
     object.extent_in_camera_m = Vec3{0.4F, 0.2F, 0};
     frame.objects.list.push_back(object);
   }
-  [[nodiscard]] std::vector<Sighting> sighted(bool with_rig = true) const {
+  [[nodiscard]] std::vector<Detection> sighted(bool with_rig = true) const {
     const StereoRig rig{.focal_px = 100, .cx_px = 20, .cy_px = 15, .baseline_m = 0.1F, .doffs_px = 0};
-    return sight(frame, {left, rgb}, with_rig ? std::optional(rig) : std::nullopt, {});
+    return detect(frame, {left, rgb}, with_rig ? std::optional(rig) : std::nullopt, {});
   }
 };
 
 TEST(Sight, ReportsAPositionWithItsUncertainty) {
-  const Sighting seen = Picture({10, 10, 12, 8}, 1).sighted().at(0);
+  const Detection seen = Picture({10, 10, 12, 8}, 1).sighted().at(0);
   EXPECT_TRUE(seen.has_place);
   EXPECT_FALSE(seen.is_cut);
   EXPECT_EQ(seen.position_in_camera_m, (Point3{0, 0, 2}));
@@ -650,14 +650,14 @@ TEST(Sight, ReportsAPositionWithItsUncertainty) {
 }
 
 TEST(Sight, AnUncertainOrClippedMaskHasAMoreUncertainCentre) {
-  const Sighting whole = Picture({10, 10, 12, 8}, 1).sighted().at(0);
+  const Detection whole = Picture({10, 10, 12, 8}, 1).sighted().at(0);
   const double sure = whole.covariance_in_camera_m2[0];
   EXPECT_GT(Picture({10, 10, 12, 8}, 0.5F).sighted().at(0).covariance_in_camera_m2[0], 2 * sure);
-  const Sighting cut = Picture({0, 10, 12, 8}, 1).sighted().at(0);
+  const Detection cut = Picture({0, 10, 12, 8}, 1).sighted().at(0);
   EXPECT_TRUE(cut.is_cut);
   EXPECT_GT(cut.covariance_in_camera_m2[0], 10 * sure);
   EXPECT_LT(cut.covariance_in_camera_m2[4], sure);  // clipped at left and right, not at top and bottom
-  const Sighting unsure = Picture({10, 10, 12, 8}, 0.5F).sighted().at(0);
+  const Detection unsure = Picture({10, 10, 12, 8}, 0.5F).sighted().at(0);
   EXPECT_GT(unsure.steady_in_camera_m2[0], 2 * whole.steady_in_camera_m2[0]);
   EXPECT_EQ(cut.steady_in_camera_m2, whole.steady_in_camera_m2);  // the centre is that of what is visible
 }
@@ -668,7 +668,7 @@ TEST(Sight, OmitsObjectsBelowTheConfidenceThreshold) {
 }
 
 TEST(Sight, HasColoursButNoPositionWithoutARig) {
-  const Sighting seen = Picture({10, 10, 12, 8}).sighted(false).at(0);
+  const Detection seen = Picture({10, 10, 12, 8}).sighted(false).at(0);
   EXPECT_FALSE(seen.has_place);
   float lightness = 0;
   float chroma = 0;

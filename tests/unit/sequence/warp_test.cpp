@@ -38,16 +38,16 @@ struct Scene {
       }
     }
   }
-  [[nodiscard]] Remembered remembered(const Pose& pose = {}) const {
+  [[nodiscard]] MaskMemory remembered(const Pose& pose = {}) const {
     return remember({}, tracks, objects, disparity, pose, {}, kRig);
   }
 };
 
-Warped warped(const Scene& scene, const Pose& pose, std::int64_t now_ns = 100'000'000) {
+MaskPrediction warped(const Scene& scene, const Pose& pose, std::int64_t now_ns = 100'000'000) {
   return warp(scene.remembered(), scene.tracks, pose, Stamp{now_ns}, kRig, kSize, {});
 }
 
-int count(const Warped& warped, std::int64_t id) {
+int count(const MaskPrediction& warped, std::int64_t id) {
   int found = 0;
   for (int y = 0; y < kSize.height; ++y)
     for (int x = 0; x < kSize.width; ++x) found += warped.ids(x, y) == TrackId{id} ? 1 : 0;
@@ -58,7 +58,7 @@ TEST(Warp, AStaticCameraSeesTheSame) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
   scene.disparity.disparity_px(10, 5) = kNan;  // at a corner: not enclosed
-  const Warped now = warped(scene, {});
+  const MaskPrediction now = warped(scene, {});
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 0; x < kSize.width; ++x) {
       const bool is_in = x >= 10 && x < 16 && y >= 5 && y < 9 && !(x == 10 && y == 5);
@@ -77,7 +77,7 @@ TEST(Warp, ObjectsMoveLeftIfTheCameraMovesRight) {
   scene.add({10, 5, 6, 4}, 5);
   Pose pose;
   pose.translation_m = {0.06, 0, 0};  // 3 px
-  const Warped now = warped(scene, pose);
+  const MaskPrediction now = warped(scene, pose);
   EXPECT_EQ(now.ids(7, 5), TrackId{1});
   EXPECT_EQ(now.ids(12, 8), TrackId{1});
   EXPECT_EQ(now.ids(13, 8), TrackId::none);
@@ -89,7 +89,7 @@ TEST(Warp, ThePositionInTheMapDoesNotDependOnTheCamera) {
   scene.add({10, 5, 6, 4}, 5);
   Pose before = rotation_about({0.3, -0.2, 0.9});
   before.translation_m = {4, 5, -6};
-  const Warped now = warp(scene.remembered(before), scene.tracks, before, Stamp{1}, kRig, kSize, {});
+  const MaskPrediction now = warp(scene.remembered(before), scene.tracks, before, Stamp{1}, kRig, kSize, {});
   EXPECT_EQ(count(now, 1), 24);
   EXPECT_EQ(now.ids(10, 5), TrackId{1});
 }
@@ -100,7 +100,7 @@ TEST(Warp, TheNearerOneHidesTheFarther) {
   scene.add({16, 5, 6, 4}, 10);  // 1 m: moves twice as far
   Pose pose;
   pose.translation_m = {0.06, 0, 0};
-  const Warped now = warped(scene, pose);
+  const MaskPrediction now = warped(scene, pose);
   EXPECT_EQ(now.ids(9, 5), TrackId{1});  // 10 … 15 moved to 7 … 12, 16 … 21 to 10 … 15
   EXPECT_EQ(now.ids(10, 5), TrackId{2});
   EXPECT_EQ(count(now, 1), 12);
@@ -112,7 +112,7 @@ TEST(Warp, GapsOfOnePixelAreClosedAndWiderOnesAreNot) {
   scene.add({15, 5, 10, 10}, 5);
   Pose nearer;
   nearer.translation_m = {0, 0, 0.8};  // 1.2 m before it: 10 px become 15 … 16
-  const Warped now = warped(scene, nearer);
+  const MaskPrediction now = warped(scene, nearer);
   EXPECT_GT(count(now, 1), 200);
   Pose much_nearer;
   much_nearer.translation_m = {0, 0, 1.5};  // 0.5 m: every fourth pixel
@@ -125,7 +125,7 @@ TEST(Warp, AMovingTrackFollowsItsVelocity) {
   scene.tracks.list[0].velocity_m_s = {0.4, 0, 0};
   EXPECT_EQ(warped(scene, {}).ids(10, 5), TrackId{1});  // it has a velocity, but is labelled static
   scene.tracks.list[0].is_moving = true;
-  const Warped now = warped(scene, {});  // 0.1 s later: 2 px
+  const MaskPrediction now = warped(scene, {});  // 0.1 s later: 2 px
   EXPECT_EQ(now.ids(11, 5), TrackId::none);
   EXPECT_EQ(now.ids(12, 5), TrackId{1});
   EXPECT_EQ(now.ids(17, 5), TrackId{1});
@@ -136,7 +136,7 @@ TEST(Warp, PixelsOutsideTheImageAreCounted) {
   scene.add({0, 5, 10, 4}, 5);
   Pose pose;
   pose.translation_m = {0.12, 0, 0};  // 6 px
-  const Warped now = warped(scene, pose);
+  const MaskPrediction now = warped(scene, pose);
   EXPECT_NEAR(now.masks[0].in_view, 0.4, 1e-6);
   Pose turned = rotation_about({0, 3.14159265, 0});
   EXPECT_EQ(warped(scene, turned).masks[0].in_view, 0);  // behind the camera
@@ -145,8 +145,8 @@ TEST(Warp, PixelsOutsideTheImageAreCounted) {
 TEST(Warp, ADeadTrackIsNotShown) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
-  const Remembered before = scene.remembered();
-  const Warped now = warp(before, Tracks{}, {}, Stamp{1}, kRig, kSize, {});
+  const MaskMemory before = scene.remembered();
+  const MaskPrediction now = warp(before, Tracks{}, {}, Stamp{1}, kRig, kSize, {});
   EXPECT_EQ(count(now, 1), 0);
   EXPECT_TRUE(now.masks.empty());
 }
@@ -155,7 +155,7 @@ TEST(Remember, AMaskStaysUntilItsTrackIsSeenAgain) {
   Scene scene;
   scene.add({10, 5, 6, 4}, 5);
   scene.add({25, 5, 3, 3}, 4);
-  Remembered memory = scene.remembered();
+  MaskMemory memory = scene.remembered();
   ASSERT_EQ(memory.masks.size(), 2U);
   EXPECT_EQ(memory.masks[0].points.size(), 24U);
   EXPECT_EQ(memory.masks[1].points.size(), 9U);
@@ -184,7 +184,7 @@ TEST(Remember, PiecesAreOneMask) {
   scene.add({16, 5, 3, 3}, 5);
   scene.tracks.list.pop_back();
   scene.tracks.list[0].parts = {ObjectId{2}};
-  const Remembered memory = scene.remembered();
+  const MaskMemory memory = scene.remembered();
   ASSERT_EQ(memory.masks.size(), 1U);
   EXPECT_EQ(memory.masks[0].points.size(), 33U);
 }
@@ -192,7 +192,7 @@ TEST(Remember, PiecesAreOneMask) {
 TEST(OverlapsOf, CountsCurrentPixelsWhereATrackIsExpected) {
   Scene scene;
   scene.add({10, 5, 10, 4}, 5);
-  const Remembered memory = scene.remembered();
+  const MaskMemory memory = scene.remembered();
   Scene now;
   now.add({8, 5, 6, 4}, 5);   // common: columns 10 … 13
   now.add({14, 5, 2, 4}, 7);  // nearer, columns 14 and 15

@@ -25,7 +25,7 @@ Matches box_before_wall() {
 }
 
 TEST(LeftRight, RejectsPixelsHiddenFromTheRightCamera) {
-  const auto rejected = reject_inconsistent(box_before_wall(), {1.0F, LeftRightMethod::true_}, {});
+  const auto rejected = reject_inconsistent(box_before_wall(), {1.0F, LeftRightMethod::right_winner}, {});
   EXPECT_EQ(numbers(rejected),
             (std::vector<std::vector<std::int64_t>>{{0, kRejected, kRejected, 0, 0, 0, 0, 0}}));
 }
@@ -48,9 +48,9 @@ TEST(LeftRight, AllowsTheGivenDifferenceAndNoMore) {
   Matches matches;
   matches.best = grid<std::int16_t>({{0, 0, 0}});
   matches.best_right = grid<std::int16_t>({{-1, 2, 0}});
-  EXPECT_EQ(numbers(reject_inconsistent(matches, {1.9F, LeftRightMethod::true_}, {})),
+  EXPECT_EQ(numbers(reject_inconsistent(matches, {1.9F, LeftRightMethod::right_winner}, {})),
             (std::vector<std::vector<std::int64_t>>{{0, kRejected, 0}}));
-  EXPECT_EQ(numbers(reject_inconsistent(matches, {0.0F, LeftRightMethod::true_}, {})),
+  EXPECT_EQ(numbers(reject_inconsistent(matches, {0.0F, LeftRightMethod::right_winner}, {})),
             (std::vector<std::vector<std::int64_t>>{{kRejected, kRejected, 0}}));
 }
 
@@ -59,14 +59,14 @@ TEST(LeftRight, LooksInTheRowInWhichTheMatchWasFound) {
   matches.best = grid<std::int16_t>({{0, 1}, {0, 0}});
   matches.best_right = grid<std::int16_t>({{5, 5}, {1, 0}});
   matches.row_offset = grid<std::int8_t>({{1, 1}, {-1, 0}});
-  EXPECT_EQ(numbers(reject_inconsistent(matches, {0.0F, LeftRightMethod::true_}, {})),
+  EXPECT_EQ(numbers(reject_inconsistent(matches, {0.0F, LeftRightMethod::right_winner}, {})),
             (std::vector<std::vector<std::int64_t>>{{kRejected, 0}, {kRejected, 0}}));
 }
 
 TEST(LeftRight, MinusOneSwitchesItOffAndNeedsNoEvidence) {
   Matches matches;
   matches.best = grid<std::int16_t>({{0, 1}});
-  EXPECT_EQ(numbers(reject_inconsistent(matches, {-1.0F, LeftRightMethod::true_}, {})),
+  EXPECT_EQ(numbers(reject_inconsistent(matches, {-1.0F, LeftRightMethod::right_winner}, {})),
             (std::vector<std::vector<std::int64_t>>{{0, 0}}));
 }
 

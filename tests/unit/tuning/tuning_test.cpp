@@ -69,7 +69,7 @@ TEST(Tunable, TakesItsLimitsFromTheFieldsOfItsStage) {
   EXPECT_EQ(max_diff.kind, TunableKind::number);
   EXPECT_TRUE(max_diff.minus_one_is_off);
   EXPECT_EQ(max_diff.of_presets, (Strings{"2", "1"}));
-  EXPECT_EQ(named("left_right.method").choices, (Strings{"true", "vote"}));
+  EXPECT_EQ(named("left_right.method").choices, (Strings{"right_winner", "vote"}));
   EXPECT_EQ(named("ground.label_floor").choices, (Strings{"false", "true"}));
 }
 
@@ -156,7 +156,7 @@ TEST(Neighbours, FromOffOrZeroThePresetsValuesAreTried) {
   EXPECT_EQ(neighbours(named("uniqueness.ratio"), "-1", 1.6), (Strings{"10"}));
   EXPECT_EQ(neighbours(named("uniqueness.ratio"), "5", 2), (Strings{"10", "2.5", "-1"}));
   EXPECT_EQ(neighbours(named("objects.min_confidence"), "0", 1.6), (Strings{"0.3"}));
-  EXPECT_EQ(neighbours(named("left_right.method"), "true", 1.6), (Strings{"vote"}));
+  EXPECT_EQ(neighbours(named("left_right.method"), "right_winner", 1.6), (Strings{"vote"}));
 }
 
 TEST(Neighbours, EveryValueOfEveryOptionIsAccepted) {
@@ -201,7 +201,7 @@ std::vector<Loss> bowl(const std::vector<Setting>& settings) {
   double loss = 1 + log_square(value_of(settings, "semi_global.penalty_edge"), 4) +
                 log_square(value_of(settings, "speckle.size"), 20);
   for (const Setting& setting : settings) {
-    if (setting.option == "left_right.method" && setting.value == "true") loss += 1;
+    if (setting.option == "left_right.method" && setting.value == "right_winner") loss += 1;
   }
   return {{loss, 1}, {loss, 1}};
 }

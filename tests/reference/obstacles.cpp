@@ -15,7 +15,7 @@ struct Behind {
   float barrier = 0;                // what an obstacle is in front of
 };
 
-Behind behind(const SpaceCues& cues, const std::optional<StereoRig>& rig, int x, int y) {
+Behind behind(const ObstacleCues& cues, const std::optional<StereoRig>& rig, int x, int y) {
   const auto at = [&](const GroundPlane& plane) {
     return plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
   };
@@ -45,38 +45,41 @@ struct Piece {
 
 }  // namespace
 
-Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& rig,
-                         const GroundConfig& config) {
+Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
+                                     const GroundConfig& config) {
   const View<const float> disparity_px = cues.disparity.disparity_px;
-  const View<const float> seen_px = cues.seen_px.empty() ? disparity_px : cues.seen_px;
+  const View<const float> surface_disparity_px =
+      cues.surface_disparity_px.empty() ? disparity_px : cues.surface_disparity_px;
   const auto is_on_floor = [&](int x, int y) {
     const auto floor = behind(cues, rig, x, y).free_floor;
-    return floor && std::abs(seen_px(x, y) - *floor) <= config.margin;
+    return floor && std::abs(surface_disparity_px(x, y) - *floor) <= config.margin;
   };
   std::map<RegionId, Piece> pieces;
-  for (int y = 0; y < seen_px.height() && !cues.superpixels.empty(); ++y) {
-    for (int x = 0; x < seen_px.width(); ++x) {
+  for (int y = 0; y < surface_disparity_px.height() && !cues.superpixels.empty(); ++y) {
+    for (int x = 0; x < surface_disparity_px.width(); ++x) {
       Piece& piece = pieces[cues.superpixels(x, y)];
       ++piece.pixels;
-      piece.known += std::isnan(seen_px(x, y)) ? 0 : 1;
+      piece.known += std::isnan(surface_disparity_px(x, y)) ? 0 : 1;
       piece.on_floor += is_on_floor(x, y) ? 1 : 0;
     }
   }
   const auto is_floor = [&](int x, int y) {
     if (cues.superpixels.empty()) return is_on_floor(x, y);
     if (!pieces[cues.superpixels(x, y)].is_floor() || !behind(cues, rig, x, y).free_floor) return false;
-    return std::isnan(seen_px(x, y)) || is_on_floor(x, y);
+    return std::isnan(surface_disparity_px(x, y)) || is_on_floor(x, y);
   };
   const auto is_obstacle = [&](int x, int y) {
     return disparity_px(x, y) - behind(cues, rig, x, y).barrier > config.margin &&
            (cues.confidence.empty() || cues.confidence(x, y) >= 0.5F);
   };
-  Image<Space> space(disparity_px.size());
+  Image<ObstacleLabel> space(disparity_px.size());
   for (int y = 0; y < space.height(); ++y) {
     for (int x = 0; x < space.width(); ++x) {
-      Space& is = space(x, y);
-      is = is_floor(x, y) ? Space::floor : is_obstacle(x, y) ? Space::obstacle : Space::unknown;
-      if (cues.objects(x, y) != ObjectId::none) is = Space::obstacle;
+      ObstacleLabel& is = space(x, y);
+      is = is_floor(x, y)      ? ObstacleLabel::floor
+           : is_obstacle(x, y) ? ObstacleLabel::obstacle
+                               : ObstacleLabel::unknown;
+      if (cues.objects(x, y) != ObjectId::none) is = ObstacleLabel::obstacle;
     }
   }
   return space;

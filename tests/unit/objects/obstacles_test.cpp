@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
-#include <cairn/objects/space.hpp>
+#include <cairn/objects/obstacles.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -44,80 +44,81 @@ struct Room {
       std::fill_n(disparity.disparity_px.row(y) + box.x, box.width, d);
     }
   }
-  [[nodiscard]] SpaceCues cues() const {
+  [[nodiscard]] ObstacleCues cues() const {
     return {disparity, {},         confidence,
             ground,    background, by_pieces ? superpixels.view() : View<const RegionId>{},
             objects};
   }
-  [[nodiscard]] Image<Space> space(int threads = 1) const {
-    return label_space(cues(), kRig, {}, Exec::with_threads(threads));
+  [[nodiscard]] Image<ObstacleLabel> space(int threads = 1) const {
+    return label_obstacles(cues(), kRig, {}, Exec::with_threads(threads));
   }
-  [[nodiscard]] ObstacleScan scan(const SpaceConfig& config) const {
-    const Image<Space> shown = space();
+  [[nodiscard]] ObstacleScan scan(const ObstaclesConfig& config) const {
+    const Image<ObstacleLabel> shown = space();
     return scan_obstacles(shown, disparity.disparity_px, *floor_frame(kFloor, kRig), kRig, config);
   }
-  [[nodiscard]] ObstacleGrid grid(const SpaceConfig& config) const {
-    const Image<Space> shown = space();
+  [[nodiscard]] ObstacleGrid grid(const ObstaclesConfig& config) const {
+    const Image<ObstacleLabel> shown = space();
     return map_obstacles(shown, disparity.disparity_px, *floor_frame(kFloor, kRig), kRig, config);
   }
-  [[nodiscard]] std::vector<LeftOut> left_out(const std::vector<float>& likeliest,
-                                              const std::optional<StereoRig>& rig, int threads = 1) const {
-    const Image<Space> shown = space();
-    return left_out_of(shown, cues(), likeliest, rig, {.min_area = 50, .wall_tolerance_px = 1},
-                       Exec::with_threads(threads));
+  [[nodiscard]] std::vector<RejectedObstacle> left_out(const std::vector<float>& likeliest,
+                                                       const std::optional<StereoRig>& rig,
+                                                       int threads = 1) const {
+    const Image<ObstacleLabel> shown = space();
+    return rejected_obstacles(shown, cues(), likeliest, rig, {.min_area = 50, .wall_tolerance_px = 1},
+                              Exec::with_threads(threads));
   }
 };
 
 TEST(LabelSpace, TheFloorIsFreeAndWallsAreObstacles) {
-  const Image<Space> space = Room().space();
-  EXPECT_EQ(space(5, 55), Space::floor);
-  EXPECT_EQ(space(40, 35), Space::floor);
-  EXPECT_EQ(space(40, 5), Space::obstacle);  // the wall, above the horizon
-  EXPECT_EQ(space(40, 22), Space::obstacle);
+  const Image<ObstacleLabel> space = Room().space();
+  EXPECT_EQ(space(5, 55), ObstacleLabel::floor);
+  EXPECT_EQ(space(40, 35), ObstacleLabel::floor);
+  EXPECT_EQ(space(40, 5), ObstacleLabel::obstacle);  // the wall, above the horizon
+  EXPECT_EQ(space(40, 22), ObstacleLabel::obstacle);
 }
 
 TEST(LabelSpace, PixelsAboveTheFloorAreObstaclesEvenIfNoObject) {
   Room room;
   room.board({30, 35, 8, 12}, 8);
-  const Image<Space> space = room.space();
-  EXPECT_EQ(space(33, 36), Space::obstacle);
-  EXPECT_EQ(space(33, 52), Space::floor);
+  const Image<ObstacleLabel> space = room.space();
+  EXPECT_EQ(space(33, 36), ObstacleLabel::obstacle);
+  EXPECT_EQ(space(33, 52), ObstacleLabel::floor);
 }
 
 TEST(LabelSpace, HolesAreUnknownUnlessTheFloorIsAroundThem) {
   Room room;
   room.disparity.disparity_px(45, 55) = kNan;  // one pixel of a square of floor
   for (int y = 50; y < 60; ++y) std::fill_n(room.disparity.disparity_px.row(y), 10, kNan);  // a whole square
-  const Image<Space> space = room.space();
-  EXPECT_EQ(space(45, 55), Space::floor);
-  EXPECT_EQ(space(5, 55), Space::unknown);
+  const Image<ObstacleLabel> space = room.space();
+  EXPECT_EQ(space(45, 55), ObstacleLabel::floor);
+  EXPECT_EQ(space(5, 55), ObstacleLabel::unknown);
   room.by_pieces = false;
-  EXPECT_EQ(room.space()(45, 55), Space::unknown);
+  EXPECT_EQ(room.space()(45, 55), ObstacleLabel::unknown);
 }
 
 TEST(LabelSpace, ASuperpixelIsFloorByThreeFifthsOfItsKnownPixels) {
   Room room;
   room.board({0, 50, 4, 10}, 20);  // two fifths of a square of 10 px
-  EXPECT_EQ(room.space()(8, 55), Space::floor);
-  EXPECT_EQ(room.space()(2, 55), Space::obstacle);
+  EXPECT_EQ(room.space()(8, 55), ObstacleLabel::floor);
+  EXPECT_EQ(room.space()(2, 55), ObstacleLabel::obstacle);
   room.board({0, 50, 5, 10}, 20);
-  EXPECT_EQ(room.space()(8, 55), Space::unknown);
+  EXPECT_EQ(room.space()(8, 55), ObstacleLabel::unknown);
 }
 
 TEST(LabelSpace, UnreliableDisparitiesAreNoObstacle) {
   Room room;
   room.board({30, 35, 8, 12}, 8);
   room.confidence(33, 38) = 0.4F;
-  const Image<Space> space = room.space();
-  EXPECT_EQ(space(33, 38), Space::unknown);
-  EXPECT_EQ(space(34, 38), Space::obstacle);
+  const Image<ObstacleLabel> space = room.space();
+  EXPECT_EQ(space(33, 38), ObstacleLabel::unknown);
+  EXPECT_EQ(space(34, 38), ObstacleLabel::obstacle);
 }
 
 TEST(LabelSpace, AnObjectIsAnObstacleWithItsHoles) {
   Room room;
   room.objects(45, 55) = ObjectId{1};
   room.disparity.disparity_px(45, 55) = kNan;
-  EXPECT_EQ(room.space()(45, 55), Space::obstacle);
+  EXPECT_EQ(room.space()(45, 55), ObstacleLabel::obstacle);
 }
 
 TEST(LabelSpace, WithoutAnyPlaneAllThatIsNearerThanInfinityIsAnObstacle) {
@@ -128,21 +129,21 @@ TEST(LabelSpace, WithoutAnyPlaneAllThatIsNearerThanInfinityIsAnObstacle) {
   room.disparity.disparity_px(46, 55) = kNan;
   room.disparity.disparity_px(47, 55) = GroundConfig{}.margin;
   room.confidence(48, 55) = 0.4F;
-  const Image<Space> space = room.space();
-  EXPECT_EQ(space(45, 55), Space::obstacle);
-  EXPECT_EQ(space(46, 55), Space::unknown);
-  EXPECT_EQ(space(47, 55), Space::unknown);
-  EXPECT_EQ(space(48, 55), Space::unknown);
-  EXPECT_EQ(space(49, 55), Space::obstacle);
+  const Image<ObstacleLabel> space = room.space();
+  EXPECT_EQ(space(45, 55), ObstacleLabel::obstacle);
+  EXPECT_EQ(space(46, 55), ObstacleLabel::unknown);
+  EXPECT_EQ(space(47, 55), ObstacleLabel::unknown);
+  EXPECT_EQ(space(48, 55), ObstacleLabel::unknown);
+  EXPECT_EQ(space(49, 55), ObstacleLabel::obstacle);
 }
 
 TEST(LeftOutOf, WithoutAnyPlaneWhateverIsNotAnObjectIsListed) {
   Room room;
   room.ground = {};
   room.background = {};
-  const std::vector<LeftOut> left_out = room.left_out({}, kRig);
+  const std::vector<RejectedObstacle> left_out = room.left_out({}, kRig);
   ASSERT_FALSE(left_out.empty());
-  for (const LeftOut& left : left_out) EXPECT_NE(left.reason, LeftOutReason::background);
+  for (const RejectedObstacle& left : left_out) EXPECT_NE(left.reason, RejectionReason::background);
 }
 
 TEST(LabelSpace, WithoutAFloorObstaclesAreInFrontOfTheWalls) {
@@ -150,16 +151,16 @@ TEST(LabelSpace, WithoutAFloorObstaclesAreInFrontOfTheWalls) {
   room.ground = {};
   room.background = {{kWall}, false};
   room.board({30, 2, 8, 8}, 5);
-  const Image<Space> space = room.space();
-  EXPECT_EQ(space(33, 5), Space::obstacle);
-  EXPECT_EQ(space(60, 5), Space::unknown);
+  const Image<ObstacleLabel> space = room.space();
+  EXPECT_EQ(space(33, 5), ObstacleLabel::obstacle);
+  EXPECT_EQ(space(60, 5), ObstacleLabel::unknown);
 }
 
 TEST(LabelSpace, DoesNotDependOnThreads) {
   Room room(Size{80, 300});  // more rows than one parallel range
   room.board({30, 35, 8, 220}, 80);
-  const Image<Space> one = room.space();
-  const Image<Space> three = room.space(3);
+  const Image<ObstacleLabel> one = room.space();
+  const Image<ObstacleLabel> three = room.space(3);
   EXPECT_EQ(room.left_out({}, kRig).size(), 2U);
   EXPECT_EQ(room.left_out({}, kRig, 3).front().pixel_count, room.left_out({}, kRig).front().pixel_count);
   for (int y = 0; y < one.height(); ++y)
@@ -167,7 +168,7 @@ TEST(LabelSpace, DoesNotDependOnThreads) {
 }
 
 TEST(FloorOf, IsTheFloorOfTheSpace) {
-  const Image<Space> space = Room().space();
+  const Image<ObstacleLabel> space = Room().space();
   const Image<std::uint8_t> floor = floor_of(space, {});
   EXPECT_EQ(floor(5, 55), 255);
   EXPECT_EQ(floor(40, 5), 0);
@@ -212,11 +213,11 @@ TEST(ScanObstacles, IsAsWideAsTheImageOnTheFloor) {
   const Image<float> none({320, 240}, kNan, {});
   const GroundPlane plane = *fit_ground(none.view(), rig, config, {}).plane;
   const FloorFrame floor = *floor_frame(plane, rig);
-  Image<Space> space({320, 240}, Space::unknown, {});
+  Image<ObstacleLabel> space({320, 240}, ObstacleLabel::unknown, {});
   Image<float> d({320, 240}, kNan, {});
   for (int y = 230; y < 240; ++y) {
     for (int x = 0; x < 4; ++x) {
-      space(x, y) = Space::obstacle;
+      space(x, y) = ObstacleLabel::obstacle;
       d(x, y) = plane.disparity_px(static_cast<float>(x), static_cast<float>(y)) + 2;
     }
   }
@@ -272,15 +273,15 @@ TEST(LeftOutOf, HasAReasonForEachObstacle) {
   const std::vector<float> likeliest(48, 0.125F);
   const auto left = room.left_out(likeliest, kRig);
   ASSERT_EQ(left.size(), 3U);
-  EXPECT_EQ(left[0].reason, LeftOutReason::too_small);  // sorted by distance
+  EXPECT_EQ(left[0].reason, RejectionReason::too_small);  // sorted by distance
   EXPECT_EQ(left[0].box_px, (Rect{60, 40, 4, 3}));
-  EXPECT_EQ(left[1].reason, LeftOutReason::low_confidence);
+  EXPECT_EQ(left[1].reason, RejectionReason::low_confidence);
   EXPECT_EQ(left[1].box_px, (Rect{30, 32, 12, 14}));
   EXPECT_EQ(left[1].pixel_count, 12 * 14);
   EXPECT_EQ(left[1].confidence, 0.125F);
   ASSERT_TRUE(left[1].position_in_camera_m);
   EXPECT_NEAR(left[1].position_in_camera_m->z, 20.0 / 12, 1e-3);
-  EXPECT_EQ(left[2].reason, LeftOutReason::background);
+  EXPECT_EQ(left[2].reason, RejectionReason::background);
   EXPECT_EQ(left[2].disparity_px, 2);
 }
 
@@ -289,7 +290,7 @@ TEST(LeftOutOf, IgnoresSpecks) {
   room.board({60, 40, 2, 1}, 14);  // 2 of 4800 px: less than 0.05 %
   const auto left = room.left_out({}, {});
   ASSERT_EQ(left.size(), 1U);
-  EXPECT_EQ(left[0].reason, LeftOutReason::background);
+  EXPECT_EQ(left[0].reason, RejectionReason::background);
   EXPECT_FALSE(left[0].position_in_camera_m);  // no rig
 }
 

@@ -10,7 +10,7 @@
 namespace cairn {
 
 /// Constants of the method, not options.
-struct EvidenceConfig {
+struct TexturedConfig {
   // A textured pixel has a horizontal gradient of at least this times the noise's σ …
   float noise_factor = 1.0F;
   float gradient_min = 0.65F;  // … plus this, in grey levels
@@ -21,7 +21,7 @@ struct EvidenceConfig {
 /// and is not that of a nearly horizontal edge (|gx| > |gy|/2), with at least three agreeing disparities of
 /// such pixels in the 5×5 neighbourhood. Other disparities are propagated from the surroundings by the
 /// matcher, which is how near objects grow beyond their outlines. (beyond the paper)
-Image<float> find_evidence(const LeftImage& left, const DisparityMap& disparity, const EvidenceConfig& config,
-                           const Exec& exec);
+Image<float> select_textured(const LeftImage& left, const DisparityMap& disparity,
+                             const TexturedConfig& config, const Exec& exec);
 
 }  // namespace cairn

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "reference/evidence.hpp"
+#include "reference/textured.hpp"
 
 #include <gtest/gtest.h>
 
@@ -102,12 +102,13 @@ TEST(FindEvidence, EqualsItsDefinitionOnAnyNumberOfThreads) {
     for (const std::uint32_t seed : {1U, 2U}) {
       const Image<Gray> image = random_picture(size, seed);
       const DisparityMap map = random_map(size, seed);
-      EvidenceConfig config;
+      TexturedConfig config;
       if (seed == 2) config = {0.3F, 0.5F, 40.0F};
-      const auto expected = bits(reference::find_evidence(image, map, config));
+      const auto expected = bits(reference::select_textured(image, map, config));
       for (const std::uint32_t b : expected) found += b != 0xFFFFFFFFU ? 1 : 0;
       for (const int count : {1, 2, 3}) {
-        EXPECT_EQ(bits(find_evidence({image, {}, noise_sigma(image)}, map, config, threads(count))), expected)
+        EXPECT_EQ(bits(select_textured({image, {}, noise_sigma(image)}, map, config, threads(count))),
+                  expected)
             << text(size);
       }
     }
@@ -234,9 +235,9 @@ TEST(WayByHierarchy, AcceptsOptionsAtTheEndsOfTheirRanges) {
   for (const bool most : {false, true}) {
     Config config = by_region_tree();
     const auto end = [most](float least, float greatest) { return most ? greatest : least; };
-    config.evidence = {end(0, 100), end(0, 255), end(0, 100)};
+    config.textured = {end(0, 100), end(0, 255), end(0, 100)};
     run_and_check(grey, rgb, map, kRig, config);
-    config.evidence = {0, 0, 100};
+    config.textured = {0, 0, 100};
     config.background = {most ? 8 : 0, end(0, 100), 0, end(0, 100), 100};
     run_and_check(grey, rgb, map, kRig, config);
     config.superpixels.count = most ? 100000 : 1;

@@ -12,10 +12,10 @@ namespace cairn {
 /// own: without an observer, and with its own pool. Of two concurrent Later values, pass exec.beside() to the
 /// second.
 template <class T>
-class Later {
+class Future {
  public:
   template <class Work>
-  Later(const Exec& exec, Work work)
+  Future(const Exec& exec, Work work)
       : work_(exec, [this, work = std::move(work), beside = exec.beside()] { value_ = work(beside); }) {}
   /// To be called once. Rethrows the exception of the work.
   T get() {

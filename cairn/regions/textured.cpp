@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/parallel.hpp>
-#include <cairn/regions/evidence.hpp>
-#include <cairn/regions/evidence_kernels.hpp>
+#include <cairn/regions/textured.hpp>
+#include <cairn/regions/textured_kernels.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -19,7 +19,7 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// The image smoothed by (1 6 1)/8 both ways, in 1/64 grey level: enough to tell an edge from single-pixel
 /// noise.
-Image<std::int16_t> lightly_smoothed(View<const Gray> image, const kernels::EvidenceKernels& run,
+Image<std::int16_t> lightly_smoothed(View<const Gray> image, const kernels::TexturedKernels& run,
                                      const Exec& exec) {
   const int height = image.height();
   Image<std::int16_t> result(image.size(), exec.pool);
@@ -36,7 +36,7 @@ Image<std::int16_t> lightly_smoothed(View<const Gray> image, const kernels::Evid
 /// The disparities of textured pixels, NaN elsewhere, with a frame of NaN so that neighbours need no bounds
 /// check: pixel (x, y) of the image is at (x + kReach, y + kReach).
 Image<float> textured(View<const Gray> left, const DisparityMap& disparity, float least_gradient,
-                      const kernels::EvidenceKernels& run, const Exec& exec) {
+                      const kernels::TexturedKernels& run, const Exec& exec) {
   const Image<std::int16_t> smooth = lightly_smoothed(left, run, exec);
   const int width = left.width();
   const int height = left.height();
@@ -58,10 +58,10 @@ Image<float> textured(View<const Gray> left, const DisparityMap& disparity, floa
 
 }  // namespace
 
-Image<float> find_evidence(const LeftImage& left, const DisparityMap& disparity, const EvidenceConfig& config,
-                           const Exec& exec) {
+Image<float> select_textured(const LeftImage& left, const DisparityMap& disparity,
+                             const TexturedConfig& config, const Exec& exec) {
   const Size size = left.gray.size();
-  const kernels::EvidenceKernels& run = kernels::evidence_kernels(exec);
+  const kernels::TexturedKernels& run = kernels::textured_kernels(exec);
   const float least_gradient = config.noise_factor * left.noise_sigma + config.gradient_min;
   const Image<float> candidates = textured(left.gray, disparity, least_gradient, run, exec);
   const float agreement = config.agreement * 0.001F * static_cast<float>(size.width);

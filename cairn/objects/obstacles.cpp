@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
-#include <cairn/objects/space.hpp>
-#include <cairn/objects/space_kernels.hpp>
+#include <cairn/objects/obstacle_kernels.hpp>
+#include <cairn/objects/obstacles.hpp>
 #include <cairn/regions/runs.hpp>
 #include <cairn/stereo/islands.hpp>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr int kGrain = 64;              // rows
 constexpr std::int64_t kKnownPart = 5;  // a fifth of a superpixel
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-kernels::Backdrop backdrop_of(const SpaceCues& cues, const std::optional<StereoRig>& rig) {
+kernels::Backdrop backdrop_of(const ObstacleCues& cues, const std::optional<StereoRig>& rig) {
   const auto& planes = cues.background.planes;
   return {cues.ground.plane,
           {planes.begin() + (cues.background.has_floor ? 1 : 0), planes.end()},
@@ -28,7 +28,7 @@ kernels::Backdrop backdrop_of(const SpaceCues& cues, const std::optional<StereoR
 class BackgroundRow {
  public:
   BackgroundRow(const kernels::Backdrop& backdrop, int width, const Exec& exec)
-      : run_(kernels::space_kernels(exec)),
+      : run_(kernels::obstacle_kernels(exec)),
         backdrop_(backdrop),
         free_floor_(slot(width)),
         wall_(slot(width)),
@@ -44,7 +44,7 @@ class BackgroundRow {
   [[nodiscard]] const float* barrier_px() const { return barrier_.data(); }
 
  private:
-  const kernels::SpaceKernels& run_;
+  const kernels::ObstacleKernels& run_;
   const kernels::Backdrop& backdrop_;
   std::vector<float> free_floor_;
   std::vector<float> wall_;
@@ -61,18 +61,18 @@ struct Tally {
 };
 
 /// Whether each superpixel is floor; empty without superpixels.
-std::vector<std::uint8_t> floor_pieces(const SpaceCues& cues, View<const float> seen_px,
+std::vector<std::uint8_t> floor_pieces(const ObstacleCues& cues, View<const float> surface_disparity_px,
                                        const kernels::Backdrop& backdrop, float margin, const Exec& exec) {
   if (cues.superpixels.empty()) return {};
-  const int width = seen_px.width();
+  const int width = surface_disparity_px.width();
   BackgroundRow behind(backdrop, width, exec);
   std::vector<std::uint64_t> up_to(slot(width) + 1);
   std::vector<Tally> pieces;
   for_each_run(cues.superpixels, exec, [&](const Run& run) {
     if (run.first == 0) {
       behind.look_at(run.y);
-      kernels::space_kernels(exec).sum_floor(seen_px.row(run.y), behind.free_floor_px(), margin, width,
-                                             up_to.data());
+      kernels::obstacle_kernels(exec).sum_floor(surface_disparity_px.row(run.y), behind.free_floor_px(),
+                                                margin, width, up_to.data());
     }
     const std::size_t i = index(run.label);
     if (i >= pieces.size()) pieces.resize(i + 1);
@@ -95,11 +95,12 @@ struct FloorPoint {
 
 /// Calls visit(point) for every obstacle pixel within height and range.
 template <class Visit>
-void for_each_obstacle_point(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
-                             const StereoRig& rig, const SpaceConfig& config, Visit visit) {
+void for_each_obstacle_point(View<const ObstacleLabel> space, View<const float> disparity_px,
+                             const FloorFrame& floor, const StereoRig& rig, const ObstaclesConfig& config,
+                             Visit visit) {
   for (int y = 0; y < space.height(); ++y) {
     for (int x = 0; x < space.width(); ++x) {
-      if (space(x, y) != Space::obstacle || std::isnan(disparity_px(x, y))) continue;
+      if (space(x, y) != ObstacleLabel::obstacle || std::isnan(disparity_px(x, y))) continue;
       const auto point =
           rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), disparity_px(x, y));
       if (!point) continue;
@@ -111,11 +112,11 @@ void for_each_obstacle_point(View<const Space> space, View<const float> disparit
 
 /// Obstacles that are not objects: connected pixels of one surface.
 struct RestRow {
-  const Space* space;
+  const ObstacleLabel* space;
   const ObjectId* object;
   const float* d;
   [[nodiscard]] bool is_pixel(int x) const {
-    return space[x] == Space::obstacle && object[x] == ObjectId::none && d[x] == d[x];
+    return space[x] == ObstacleLabel::obstacle && object[x] == ObjectId::none && d[x] == d[x];
   }
   [[nodiscard]] bool follows(int x) const { return is_pixel(x) && std::abs(d[x] - d[x - 1]) <= 1; }
   [[nodiscard]] bool joins(const RestRow& above, int x) const { return std::abs(d[x] - above.d[x]) <= 1; }
@@ -133,13 +134,15 @@ struct IslandStatistics {
 
 }  // namespace
 
-Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& rig,
-                         const GroundConfig& config, const Exec& exec) {
+Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
+                                     const GroundConfig& config, const Exec& exec) {
   const View<const float> disparity_px = cues.disparity.disparity_px;
-  const View<const float> seen_px = cues.seen_px.empty() ? disparity_px : cues.seen_px;
+  const View<const float> surface_disparity_px =
+      cues.surface_disparity_px.empty() ? disparity_px : cues.surface_disparity_px;
   const kernels::Backdrop backdrop = backdrop_of(cues, rig);
-  const std::vector<std::uint8_t> pieces = floor_pieces(cues, seen_px, backdrop, config.margin, exec);
-  Image<Space> space(disparity_px.size(), exec.pool);
+  const std::vector<std::uint8_t> pieces =
+      floor_pieces(cues, surface_disparity_px, backdrop, config.margin, exec);
+  Image<ObstacleLabel> space(disparity_px.size(), exec.pool);
   const int width = space.width();
   parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
     BackgroundRow behind(backdrop, width, exec);
@@ -147,7 +150,7 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
     const std::vector<float> all_trusted(cues.confidence.empty() ? slot(width) : 0, 1.0F);
     for (int y = first; y < last; ++y) {
       behind.look_at(y);
-      const float* const seen = seen_px.row(y);
+      const float* const seen = surface_disparity_px.row(y);
       if (pieces.empty()) {  // each known pixel is a piece; the kernel checks whether it is on the floor
         std::transform(seen, seen + width, in_floor.begin(), [](float d) { return d == d ? 1 : 0; });
       } else {
@@ -155,7 +158,7 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
         std::transform(piece, piece + width, in_floor.begin(),
                        [is_floor = pieces.data()](RegionId i) { return is_floor[index(i)]; });
       }
-      kernels::space_kernels(exec).label(
+      kernels::obstacle_kernels(exec).label(
           {cues.objects.row(y), disparity_px.row(y), seen,
            cues.confidence.empty() ? all_trusted.data() : cues.confidence.row(y), in_floor.data(),
            behind.free_floor_px(), behind.barrier_px()},
@@ -165,17 +168,18 @@ Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& 
   return space;
 }
 
-Image<std::uint8_t> floor_of(View<const Space> space, const Exec& exec) {
+Image<std::uint8_t> floor_of(View<const ObstacleLabel> space, const Exec& exec) {
   Image<std::uint8_t> floor(space.size(), exec.pool);
   for (int y = 0; y < space.height(); ++y) {
-    std::transform(space.row(y), space.row(y) + space.width(), floor.row(y),
-                   [](Space s) { return s == Space::floor ? std::uint8_t{255} : std::uint8_t{0}; });
+    std::transform(space.row(y), space.row(y) + space.width(), floor.row(y), [](ObstacleLabel s) {
+      return s == ObstacleLabel::floor ? std::uint8_t{255} : std::uint8_t{0};
+    });
   }
   return floor;
 }
 
-ObstacleScan scan_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
-                            const StereoRig& rig, const SpaceConfig& config) {
+ObstacleScan scan_obstacles(View<const ObstacleLabel> space, View<const float> disparity_px,
+                            const FloorFrame& floor, const StereoRig& rig, const ObstaclesConfig& config) {
   constexpr float kIncrement = std::numbers::pi_v<float> / 180;
   constexpr std::size_t kRank = 3;  // from 0
   float widest = 0;
@@ -207,12 +211,12 @@ ObstacleScan scan_obstacles(View<const Space> space, View<const float> disparity
   return scan;
 }
 
-ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
-                           const StereoRig& rig, const SpaceConfig& config) {
+ObstacleGrid map_obstacles(View<const ObstacleLabel> space, View<const float> disparity_px,
+                           const FloorFrame& floor, const StereoRig& rig, const ObstaclesConfig& config) {
   constexpr int kEnough = 3;  // pixels
   // Slightly less, so that rounding errors do not add a cell.
   const float cells = std::ceil(config.range / config.cell_size - 1e-4F);
-  const int reach = static_cast<int>(std::clamp(cells, 1.0F, float{ObstacleGrid::kMostCells}));
+  const int reach = static_cast<int>(std::clamp(cells, 1.0F, float{ObstacleGrid::kMaxCells}));
   ObstacleGrid grid{config.cell_size, reach, 2 * reach, 0, -config.cell_size * static_cast<float>(reach), {}};
   grid.cells.assign(slot(grid.width) * slot(grid.height), ObstacleGrid::kUnknown);
   const auto at = [&](int column, int row) { return slot(row) * slot(grid.width) + slot(column); };
@@ -230,7 +234,7 @@ ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_
       if (!inside) continue;
       const auto u = static_cast<int>(std::lround(x));
       const auto v = static_cast<int>(std::lround(y));
-      if (space(u, v) == Space::floor && !std::isnan(disparity_px(u, v)))
+      if (space(u, v) == ObstacleLabel::floor && !std::isnan(disparity_px(u, v)))
         grid.cells[at(column, row)] = ObstacleGrid::kFree;
     }
   }
@@ -247,10 +251,11 @@ ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_
   return grid;
 }
 
-std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
-                                 const std::vector<float>& likeliest, const std::optional<StereoRig>& rig,
-                                 const LeftOutLimits& limits, const Exec& exec) {
-  constexpr double kLeastShare = 0.0005;
+std::vector<RejectedObstacle> rejected_obstacles(View<const ObstacleLabel> space, const ObstacleCues& cues,
+                                                 const std::vector<float>& likeliest,
+                                                 const std::optional<StereoRig>& rig,
+                                                 const RejectedObstacleLimits& limits, const Exec& exec) {
+  constexpr double kMinShare = 0.0005;
   const View<const float> d = cues.disparity.disparity_px;
   const kernels::Backdrop backdrop = backdrop_of(cues, rig);
   BackgroundRow behind(backdrop, space.width(), exec);
@@ -275,26 +280,27 @@ std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
     });
   }
 
-  std::vector<LeftOut> all;
+  std::vector<RejectedObstacle> all;
   for (const IslandStatistics& of : found) {
-    if (static_cast<double>(of.pixels) < kLeastShare * static_cast<double>(space.size().area())) continue;
+    if (static_cast<double>(of.pixels) < kMinShare * static_cast<double>(space.size().area())) continue;
     const auto count = static_cast<double>(of.pixels);
     const auto x = static_cast<float>(of.x / count);
     const auto y = static_cast<float>(of.y / count);
-    LeftOut left{LeftOutReason::low_confidence,
-                 of.box,
-                 static_cast<int>(of.pixels),
-                 static_cast<float>(of.disparity_px / count),
-                 std::nullopt,
-                 of.likeliest};
+    RejectedObstacle left{RejectionReason::low_confidence,
+                          of.box,
+                          static_cast<int>(of.pixels),
+                          static_cast<float>(of.disparity_px / count),
+                          std::nullopt,
+                          of.likeliest};
     if (rig) left.position_in_camera_m = rig->point_in_camera_m(x, y, left.disparity_px);
-    if (of.pixels < limits.min_area) left.reason = LeftOutReason::too_small;
-    if (2 * of.on_wall >= of.pixels) left.reason = LeftOutReason::background;
+    if (of.pixels < limits.min_area) left.reason = RejectionReason::too_small;
+    if (2 * of.on_wall >= of.pixels) left.reason = RejectionReason::background;
     all.push_back(left);
   }
   // Stable: ties stay in raster order.
-  std::stable_sort(all.begin(), all.end(),
-                   [](const LeftOut& p, const LeftOut& q) { return p.disparity_px > q.disparity_px; });
+  std::stable_sort(all.begin(), all.end(), [](const RejectedObstacle& p, const RejectedObstacle& q) {
+    return p.disparity_px > q.disparity_px;
+  });
   return all;
 }
 

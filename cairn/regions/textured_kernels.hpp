@@ -6,7 +6,7 @@
 #include <cairn/stereo/reject.hpp>
 #include <cstdint>
 
-/// The kernels of find_evidence(), per pixel of a row; one set per instruction set. Private to the library.
+/// The kernels of select_textured(), per pixel of a row; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
 /// A row of the smoothed image and its neighbours, in 1/64 grey level.
@@ -18,7 +18,7 @@ struct SmoothRows {
 
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
-struct EvidenceKernels {
+struct TexturedKernels {
   /// Smooths by (1 6 1)/8 along both axes, in 1/64 level. Working memory: `column`, width + 2 samples.
   void (*smooth_lightly)(const std::uint8_t* up, const std::uint8_t* here, const std::uint8_t* down,
                          int width, std::int16_t* column, std::int16_t* out);
@@ -32,8 +32,8 @@ struct EvidenceKernels {
 };
 
 /// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
-const EvidenceKernels* evidence_kernels(Target target);
+const TexturedKernels* textured_kernels(Target target);
 /// The functions for the active target of `exec`.
-const EvidenceKernels& evidence_kernels(const Exec& exec);
+const TexturedKernels& textured_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

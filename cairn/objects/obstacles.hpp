@@ -11,30 +11,30 @@
 #include <string_view>
 #include <vector>
 
-/// Obstacles, whether objects or not, and free floor, for a robot. (docs/stages/space.md, beyond the paper)
+/// Obstacles, whether objects or not, and free floor, for a robot. (docs/stages/obstacles.md, beyond the paper)
 namespace cairn {
 
 /// The class of a pixel. The values are those of space.png.
-enum class Space : std::uint8_t { unknown = 0, floor = 128, obstacle = 255 };
+enum class ObstacleLabel : std::uint8_t { unknown = 0, floor = 128, obstacle = 255 };
 
-struct SpaceConfig {
+struct ObstaclesConfig {
   float max_height = 2.0F;  // m above the floor, 0.01 … 100; higher things do not obstruct
   float range = 6.0F;       // m, 0.1 … 1000; of scan and grid
   float cell_size = 0.05F;  // m, 0.005 … 10; of the grid
 };
 template <class V>
-void fields(SpaceConfig& c, V&& v) {
+void fields(ObstaclesConfig& c, V&& v) {
   v("max_height", c.max_height, "m", "largest height above the floor that can obstruct the robot",
     range(0.01F, 100.0F));
   v("range", c.range, "m", "range of the obstacle scan and grid", range(0.1F, 1000.0F));
   v("cell_size", c.cell_size, "m", "cell size of the obstacle grid", range(0.005F, 10.0F));
 }
 
-/// The inputs of label_space(); all images have one size. Borrows everything.
-struct SpaceCues {
+/// The inputs of label_obstacles(); all images have one size. Borrows everything.
+struct ObstacleCues {
   const DisparityMap& disparity;
-  View<const float> seen_px;     // floor_under_reflections(); empty: the disparities
-  View<const float> confidence;  // of the disparities; empty: all are trusted
+  View<const float> surface_disparity_px;  // floor_under_reflections(); empty: the disparities
+  View<const float> confidence;            // of the disparities; empty: all are trusted
   const Ground& ground;
   const Background& background;
   View<const RegionId> superpixels;  // empty: each pixel is its own
@@ -46,11 +46,11 @@ struct SpaceCues {
 /// than wrong. floor: outside of objects, in a superpixel with at least a fifth of its pixels known and three
 /// fifths of these on the floor, except for pixels that are off the floor themselves. Holes in such a
 /// superpixel are floor too. Everything else is unknown.
-Image<Space> label_space(const SpaceCues& cues, const std::optional<StereoRig>& rig,
-                         const GroundConfig& config, const Exec& exec);
+Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
+                                     const GroundConfig& config, const Exec& exec);
 
 /// 255 for floor, else 0.
-Image<std::uint8_t> floor_of(View<const Space> space, const Exec& exec);
+Image<std::uint8_t> floor_of(View<const ObstacleLabel> space, const Exec& exec);
 
 /// The nearest obstacle in each direction, as from a laser scanner (ROS sensor_msgs/LaserScan), seen from the
 /// floor below the camera.
@@ -61,11 +61,11 @@ struct ObstacleScan {
   std::vector<float> ranges_m;    // NaN: no obstacle seen, but not necessarily free
 };
 
-/// `space` as returned by label_space(); obstacles without disparity have no position and are left out. A
+/// `space` as returned by label_obstacles(); obstacles without disparity have no position and are left out. A
 /// range is that of the fourth nearest pixel in its direction, so that single false matches do not count.
 /// Spans the image width on the floor; all around if the camera sees what is next to it.
-ObstacleScan scan_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
-                            const StereoRig& rig, const SpaceConfig& config);
+ObstacleScan scan_obstacles(View<const ObstacleLabel> space, View<const float> disparity_px,
+                            const FloorFrame& floor, const StereoRig& rig, const ObstaclesConfig& config);
 
 /// Occupancy of the floor, like ROS nav_msgs/OccupancyGrid: rows along y, from right to left, of cells along
 /// x, from the camera forward.
@@ -73,7 +73,7 @@ struct ObstacleGrid {
   static constexpr std::int8_t kUnknown = -1;
   static constexpr std::int8_t kFree = 0;
   static constexpr std::int8_t kOccupied = 100;
-  static constexpr int kMostCells = 4096;  // largest number of cells along x
+  static constexpr int kMaxCells = 4096;  // largest number of cells along x
 
   float cell_size_m = 0;
   int width = 0;         // cells along x
@@ -85,20 +85,20 @@ struct ObstacleGrid {
 
 /// Occupied: cells with at least three obstacle pixels. Free: other cells whose centre shows the floor, with
 /// a disparity of its own. Unknown: all others, such as those occluded by an obstacle, and holes. At most
-/// kMostCells long.
-ObstacleGrid map_obstacles(View<const Space> space, View<const float> disparity_px, const FloorFrame& floor,
-                           const StereoRig& rig, const SpaceConfig& config);
+/// kMaxCells long.
+ObstacleGrid map_obstacles(View<const ObstacleLabel> space, View<const float> disparity_px,
+                           const FloorFrame& floor, const StereoRig& rig, const ObstaclesConfig& config);
 
 /// Why something in front of the background is not an object.
-enum class LeftOutReason : std::uint8_t { background, too_small, low_confidence };
+enum class RejectionReason : std::uint8_t { background, too_small, low_confidence };
 inline constexpr std::array kLeftOutReasons{
-    Choice<LeftOutReason>{"background", LeftOutReason::background},
-    Choice<LeftOutReason>{"too small", LeftOutReason::too_small},
-    Choice<LeftOutReason>{"low confidence", LeftOutReason::low_confidence}};
+    Choice<RejectionReason>{"background", RejectionReason::background},
+    Choice<RejectionReason>{"too small", RejectionReason::too_small},
+    Choice<RejectionReason>{"low confidence", RejectionReason::low_confidence}};
 
 /// An obstacle that is not an object.
-struct LeftOut {
-  LeftOutReason reason = LeftOutReason::background;
+struct RejectedObstacle {
+  RejectionReason reason = RejectionReason::background;
   Rect box_px;
   int pixel_count = 0;
   float disparity_px = 0;                    // mean of its pixels
@@ -107,7 +107,7 @@ struct LeftOut {
 };
 
 /// The limits of an object, for the reasons.
-struct LeftOutLimits {
+struct RejectedObstacleLimits {
   std::int64_t min_area = 0;  // px
   float wall_tolerance_px = 1;
 };
@@ -115,8 +115,9 @@ struct LeftOutLimits {
 /// The connected obstacles that are not objects: 4-connected pixels, neighbours within 1 px of disparity, of
 /// at least 0.05 % of the image, nearest first. background: most of it is on a wall. `likeliest`: for each
 /// superpixel the probability of its likeliest object region; empty: unknown.
-std::vector<LeftOut> left_out_of(View<const Space> space, const SpaceCues& cues,
-                                 const std::vector<float>& likeliest, const std::optional<StereoRig>& rig,
-                                 const LeftOutLimits& limits, const Exec& exec);
+std::vector<RejectedObstacle> rejected_obstacles(View<const ObstacleLabel> space, const ObstacleCues& cues,
+                                                 const std::vector<float>& likeliest,
+                                                 const std::optional<StereoRig>& rig,
+                                                 const RejectedObstacleLimits& limits, const Exec& exec);
 
 }  // namespace cairn

@@ -10,9 +10,9 @@ namespace cairn {
 
 /// Reports the result of each stage to exec.observe: stage("match", match(...)) returns its argument. The
 /// time of a stage runs from the end of the stage before. Does nothing without an observer.
-class Observed {
+class StageClock {
  public:
-  explicit Observed(const Exec& exec) : observe_(exec.observe) { restart(); }
+  explicit StageClock(const Exec& exec) : observe_(exec.observe) { restart(); }
 
   template <class T>
   T operator()(std::string_view stage, T value) {

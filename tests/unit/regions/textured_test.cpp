@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/image/noise.hpp>
-#include <cairn/regions/evidence.hpp>
+#include <cairn/regions/textured.hpp>
 #include <limits>
 
 #include "support/grids.hpp"
@@ -49,8 +49,8 @@ Image<Gray> textured_patch(Rect rect, double noise_sigma, std::uint32_t seed) {
 }
 
 Image<float> evidence_of(const Image<Gray>& image, const DisparityMap& map,
-                         const EvidenceConfig& config = {}) {
-  return find_evidence({image, {}, noise_sigma(image)}, map, config, {});
+                         const TexturedConfig& config = {}) {
+  return select_textured({image, {}, noise_sigma(image)}, map, config, {});
 }
 
 int evidence_count(const Image<float>& evidence) {
@@ -184,7 +184,7 @@ TEST(Evidence, ShrinksAsTheThresholdsRise) {
   const Image<Gray> image = textured_patch({20, 20, 80, 80}, 3, 6);
   int before = std::numeric_limits<int>::max();
   for (const float least : {0.0F, 5.0F, 20.0F, 255.0F}) {
-    EvidenceConfig config;
+    TexturedConfig config;
     config.gradient_min = least;
     const int count = evidence_count(evidence_of(image, everywhere(10), config));
     EXPECT_LT(count, before);

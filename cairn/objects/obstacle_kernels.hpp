@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
-#include <cairn/objects/space.hpp>
+#include <cairn/objects/obstacles.hpp>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-/// The kernels of label_space() and left_out_of(), per pixel of a row; one set per instruction set. Private to
+/// The kernels of label_obstacles() and rejected_obstacles(), per pixel of a row; one set per instruction set. Private to
 /// the library.
 namespace cairn::kernels {
 
@@ -26,7 +26,7 @@ struct BackdropRow {
   float* barrier;     // what an obstacle must be in front of: the floor, else the walls, else infinity
 };
 
-/// The rows of label_space().
+/// The rows of label_obstacles().
 struct SpaceRow {
   const ObjectId* object;
   const float* disparity;
@@ -38,19 +38,19 @@ struct SpaceRow {
 };
 
 /// Plain loops that compilers vectorise, as in PointKernels.
-struct SpaceKernels {
+struct ObstacleKernels {
   /// For the pixels of row y.
   void (*look_behind)(const Backdrop& backdrop, int y, int width, const BackdropRow& out);
   /// Prefix sums of a row: up_to[x] = pixels with a disparity · 2³² + pixels on the floor, of the first x.
-  void (*sum_floor)(const float* seen_px, const float* free_floor_px, float margin, int width,
+  void (*sum_floor)(const float* surface_disparity_px, const float* free_floor_px, float margin, int width,
                     std::uint64_t* up_to);
-  /// As label_space() defines it.
-  void (*label)(const SpaceRow& row, float margin, int width, Space* out);
+  /// As label_obstacles() defines it.
+  void (*label)(const SpaceRow& row, float margin, int width, ObstacleLabel* out);
 };
 
 /// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
-const SpaceKernels* space_kernels(Target target);
+const ObstacleKernels* obstacle_kernels(Target target);
 /// The functions for the active target of `exec`.
-const SpaceKernels& space_kernels(const Exec& exec);
+const ObstacleKernels& obstacle_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

@@ -36,10 +36,10 @@ inline void look_behind(const Backdrop& backdrop, int y, int width, const Backdr
   }
 }
 
-inline void sum_floor(const float* seen_px, const float* free_floor_px, float margin, int width,
+inline void sum_floor(const float* surface_disparity_px, const float* free_floor_px, float margin, int width,
                       std::uint64_t* CAIRN_RESTRICT up_to) {
   for (int x = 0; x < width; ++x) {
-    const float seen = seen_px[x];
+    const float seen = surface_disparity_px[x];
     const std::uint64_t known = seen == seen ? std::uint64_t{1} << 32U : 0;
     const std::uint64_t on_floor = std::abs(seen - free_floor_px[x]) <= margin ? 1 : 0;
     up_to[x + 1] = known + on_floor;
@@ -49,7 +49,7 @@ inline void sum_floor(const float* seen_px, const float* free_floor_px, float ma
   for (int x = 0; x < width; ++x) up_to[x + 1] += up_to[x];
 }
 
-inline void label(const SpaceRow& given, float margin, int width, Space* CAIRN_RESTRICT out) {
+inline void label(const SpaceRow& given, float margin, int width, ObstacleLabel* CAIRN_RESTRICT out) {
   constexpr float kRatherRight = 0.5F;
   const SpaceRow row = given;
   for (int x = 0; x < width; ++x) {
@@ -59,12 +59,14 @@ inline void label(const SpaceRow& given, float margin, int width, Space* CAIRN_R
     const bool is_floor = (row.in_floor[x] != 0) & (std::abs(seen - floor) <= margin);
     const bool is_in_front =
         (row.disparity[x] - row.barrier[x] > margin) & (row.confidence[x] >= kRatherRight);
-    const Space alone = is_floor ? Space::floor : is_in_front ? Space::obstacle : Space::unknown;
-    out[x] = row.object[x] != ObjectId::none ? Space::obstacle : alone;
+    const ObstacleLabel alone = is_floor      ? ObstacleLabel::floor
+                                : is_in_front ? ObstacleLabel::obstacle
+                                              : ObstacleLabel::unknown;
+    out[x] = row.object[x] != ObjectId::none ? ObstacleLabel::obstacle : alone;
   }
 }
 
-inline constexpr SpaceKernels kSpaceKernels{look_behind, sum_floor, label};
+inline constexpr ObstacleKernels kSpaceKernels{look_behind, sum_floor, label};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

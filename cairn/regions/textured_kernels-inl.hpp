@@ -46,7 +46,7 @@ inline void agreed(const float* const* rows, int width, float agreement, float* 
   }
 }
 
-inline constexpr EvidenceKernels kEvidenceKernels{smooth_lightly, textured, agreed};
+inline constexpr TexturedKernels kEvidenceKernels{smooth_lightly, textured, agreed};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -192,14 +192,14 @@ float likeness(const ColourHistogram& a, const ColourHistogram& b) {
   return std::min(sum / 2, 1.0F);
 }
 
-std::vector<Sighting> sight(const Frame& frame, const LeftImage& left, const std::optional<StereoRig>& rig,
-                            const TrackingConfig& config) {
+std::vector<Detection> detect(const Frame& frame, const LeftImage& left, const std::optional<StereoRig>& rig,
+                              const TrackingConfig& config) {
   const std::vector<ColourHistogram> looks = looks_of(frame.objects, left.gray, left.rgb);
   const auto floor = floor_frame(frame.ground, rig);
-  std::vector<Sighting> sightings;
+  std::vector<Detection> detections;
   for (const Object& object : frame.objects.list) {
     if (object.confidence < config.low_confidence) continue;
-    Sighting seen;
+    Detection seen;
     seen.object = object.id;
     seen.look = looks[slot(number(object.id)) - 1];
     seen.confidence = object.confidence;
@@ -219,9 +219,9 @@ std::vector<Sighting> sight(const Frame& frame, const LeftImage& left, const std
       seen.steady_in_camera_m2 = steady_covariance_of(seen.position_in_camera_m, seen.extent_m, object, *rig);
       if (floor) seen.height_over_floor_m = floor->to_floor(p).z;
     }
-    sightings.push_back(seen);
+    detections.push_back(seen);
   }
-  return sightings;
+  return detections;
 }
 
 }  // namespace cairn

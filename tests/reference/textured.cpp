@@ -75,8 +75,8 @@ float noise_sigma(View<const Gray> image) {
   return static_cast<float>((median + share - 0.5) / (6 * 0.6745));
 }
 
-Image<float> find_evidence(View<const Gray> left, const DisparityMap& disparity,
-                           const EvidenceConfig& config) {
+Image<float> select_textured(View<const Gray> left, const DisparityMap& disparity,
+                             const TexturedConfig& config) {
   const float least = config.noise_factor * reference::noise_sigma(left) + config.gradient_min;
   const auto s = [&](int x, int y) {
     return lightly_smoothed(left, std::clamp(x, 0, left.width() - 1), std::clamp(y, 0, left.height() - 1));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "reference/space.hpp"
+#include "reference/obstacles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -52,11 +52,11 @@ struct Scene {
   }
 };
 
-void expect_equal_to_reference(const SpaceCues& cues, const std::optional<StereoRig>& rig) {
+void expect_equal_to_reference(const ObstacleCues& cues, const std::optional<StereoRig>& rig) {
   const GroundConfig config;
-  const Image<Space> expected = reference::label_space(cues, rig, config);
+  const Image<ObstacleLabel> expected = reference::label_obstacles(cues, rig, config);
   for (const Target target : supported_targets()) {
-    EXPECT_EQ(grids::numbers(label_space(cues, rig, config, Exec::with_threads(1, target))),
+    EXPECT_EQ(grids::numbers(label_obstacles(cues, rig, config, Exec::with_threads(1, target))),
               grids::numbers(expected))
         << text(expected.size());
   }
@@ -84,8 +84,8 @@ TEST(SpaceEquivalence, HoldsForAnyKnownInputs) {
       if (walls) background.planes.insert(background.planes.end(), {kLeftWall, kRightWall});
       for (const Image<float>* const confidence : {&scene.confidence, &no_confidence}) {
         for (const Image<RegionId>* const superpixels : {&scene.superpixels, &no_superpixels}) {
-          const SpaceCues cues{scene.disparity, {},           *confidence,  ground,
-                               background,      *superpixels, scene.objects};
+          const ObstacleCues cues{scene.disparity, {},           *confidence,  ground,
+                                  background,      *superpixels, scene.objects};
           expect_equal_to_reference(cues, kRig);
           expect_equal_to_reference(cues, std::nullopt);
         }

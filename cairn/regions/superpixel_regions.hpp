@@ -14,8 +14,8 @@ namespace cairn {
 /// values of the pixels of a run, to the region: their number to valid_count, their sum to mean, and the sum of
 /// their squares to variance. Called in raster order.
 template <class AddValues>
-Segmentation segmentation_of(Image<RegionId> labels, std::size_t count, const Exec& exec,
-                             AddValues add_values) {
+Segmentation superpixel_regions(Image<RegionId> labels, std::size_t count, const Exec& exec,
+                                AddValues add_values) {
   Segmentation result{std::move(labels), std::vector<Region>(count)};
   for_each_run(result.labels, exec, [&](const Run& run) {
     Region& region = result.regions[index(run.label)];

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <cairn/objects/obstacles.hpp>
+
+/// The slow twin of label_obstacles(): each pixel from scratch.
+namespace cairn::reference {
+
+Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
+                                     const GroundConfig& config);
+
+}  // namespace cairn::reference
