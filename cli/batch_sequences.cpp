@@ -163,7 +163,7 @@ struct TrackRows::State {
     ended.clear();
     try {
       opened = open(of, {of.first, {}, of.step}, exec.pool);
-      run = std::make_unique<live::Runner>(*opened, of.source, io::CompanionFiles{},
+      run = std::make_unique<live::Runner>(*opened, of.source, io::SensorFiles{},
                                            resolve_follow(config, opened->disparities(), opened->ground()),
                                            live::LiveOptions::unpaced(), exec);
     } catch (const Error& error) {

@@ -13,7 +13,7 @@
 namespace cairn::cli {
 namespace {
 
-std::string line_of(const Step& step, const std::string& name) {
+std::string line_of(const TrackedFrame& step, const std::string& name) {
   const auto count = [&](auto&& which) {
     return std::count_if(step.tracks.list.begin(), step.tracks.list.end(), which);
   };
@@ -43,7 +43,7 @@ std::string progress_words(std::size_t done, std::optional<std::size_t> all, con
   return words;
 }
 
-std::string unreliable_line(const Step& step, const std::string& name) {
+std::string unreliable_line(const TrackedFrame& step, const std::string& name) {
   return name + ": unreliable since " + std::to_string(step.reliability.weak_frames) + " frames (" +
          text_of("%.2f", double{step.reliability.value.value_or(0)}) +
          "), weakest: " + step.reliability.weakest;
@@ -63,7 +63,7 @@ class FollowConsole : public live::Sink {
       : frames_(frames), prints_(prints), progress_(frames.value_or(0)) {}
 
   void offer(const live::LiveFramePtr& frame) override {
-    const Step& step = frame->step;
+    const TrackedFrame& step = frame->step;
     const std::string& name = frame->pair->name;
     progress_.clear();
     if (prints_) std::cout << line_of(step, name) << "\n";

@@ -59,7 +59,7 @@ struct Run {
 };
 
 /// Adds the frame's pose; returns whether the format has a line for it.
-bool add(Run& run, const Step& step, bool keep_lost) {
+bool add(Run& run, const TrackedFrame& step, bool keep_lost) {
   if (step.motion.is_new_keyframe) ++run.keyframes;
   if (step.motion.refusal != MotionRefusal::none)
     ++run.refusals[choice_name(step.motion.refusal, kMotionRefusals)];
@@ -77,7 +77,7 @@ class CameraMotion {
   CameraMotion(const StereoRig& rig, const io::MotionPriors* priors, Run& run)
       : rig_(rig), priors_(priors), run_(run) {}
 
-  Step next(const io::SequenceFrame& frame, const FollowConfig& config, const Exec& exec) {
+  TrackedFrame next(const io::SequenceFrame& frame, const FollowConfig& config, const Exec& exec) {
     const StereoResult scene = estimate_disparity(
         StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), rig_, config.segmentation, exec);
     const auto start = live::Clock::now();
@@ -90,12 +90,12 @@ class CameraMotion {
     if (priors_ != nullptr && before_) prior = priors_->between(*before_, frame.stamp, from_level_);
     if (prior) ++run_.with_prior;
     if (frame.after_gap) state_ = after_gap(std::move(state_));
-    OdometryStep moved = advance_odometry(state_, frame.left.gray, scene.disparity, scene.confidence, {},
+    OdometryStep moved = advance_odometry(state_, {frame.left.gray, scene.disparity, scene.confidence, {}},
                                           rig_, prior, config.odometry);
     run_.milliseconds.push_back(live::ms_between(start, live::Clock::now()));
     state_ = std::move(moved.state);
     before_ = frame.stamp;
-    Step step;
+    TrackedFrame step;
     step.stamp = frame.stamp;
     step.motion = moved.motion;
     step.map_from_camera = state_.map_from_camera;

@@ -50,7 +50,7 @@ void RunTotals::add(const std::string& name, std::optional<float> share) {
 }
 
 void RunTotals::add(const live::LiveFrame& frame) {
-  const Step& step = frame.step;
+  const TrackedFrame& step = frame.step;
   milliseconds.push_back(live::ms_between(frame.started, frame.done));
   if (step.is_lost) {
     ++lost;
@@ -100,8 +100,8 @@ RunFiles::RunFiles(RunFilesOptions options, live::MessageForm form, const live::
 void RunFiles::offer(const live::LiveFramePtr& frame) {
   totals_.add(*frame);
   if (!files_) return;
-  const Step& step = frame->step;
-  const io::Picture& left = frame->pair->left;
+  const TrackedFrame& step = frame->step;
+  const io::LoadedImage& left = frame->pair->left;
   files_->add(step, *text_of(*frame, form_));
   if (page_) {
     page_->add(io::encode_step(*results_of(*frame, form_), step, left.gray, left.rgb,

@@ -167,10 +167,10 @@ void Runner::wait_for_its_time(const io::SequenceFrame& pair) {
   played_ = {pair.stamp, due};
 }
 
-Step Runner::step_of(const io::SequenceFrame& pair) {
+TrackedFrame Runner::step_of(const io::SequenceFrame& pair) {
   if (options_.step) return options_.step(pair, *used_config_, exec_);
   if (options_.tracks) return follow_.next(pair);
-  Step step;
+  TrackedFrame step;
   step.index = frames_;
   step.stamp = pair.stamp;
   step.is_lost = true;

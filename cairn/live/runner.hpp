@@ -23,7 +23,7 @@ struct LiveOptions {
   std::optional<std::chrono::milliseconds> max_age;
   bool tracks = true;  // false: single frames, as by segment()
   // Instead of both: another way to process a pair, e.g. odometry alone.
-  std::function<Step(const io::SequenceFrame&, const FollowConfig&, const Exec&)> step;
+  std::function<TrackedFrame(const io::SequenceFrame&, const FollowConfig&, const Exec&)> step;
   // Playback speed of files relative to their stamps; 0 = as fast as possible.
   double pace = 1;
   std::optional<std::chrono::nanoseconds> duration;
@@ -71,7 +71,7 @@ class Runner {
   [[nodiscard]] bool has_failed() const { return has_failed_; }
   [[nodiscard]] bool was_ended() const { return was_ended_; }
   /// The landmarks after the last frame; by the thread of run().
-  [[nodiscard]] const Landmarked& marked() const { return follow_.marked(); }
+  [[nodiscard]] const LandmarkUpdate& marked() const { return follow_.marked(); }
 
   // From any thread:
 
@@ -100,7 +100,7 @@ class Runner {
   void read_source(NewestSlot<PairPtr>& slot);
   void wait_for_its_time(const io::SequenceFrame& pair);
   PairPtr newest(NewestSlot<PairPtr>& slot);
-  Step step_of(const io::SequenceFrame& pair);
+  TrackedFrame step_of(const io::SequenceFrame& pair);
   std::shared_ptr<LiveFrame> work(PairPtr pair);
   void take_config();
   void take_over(const std::optional<ControlEvent>& control);

@@ -32,7 +32,7 @@ bool is_same(View<const Gray> a, View<const Gray> b) {
 // ---- the pair ----
 
 Message left(const LiveFrame& frame, const MessageForm& form) {
-  const io::Picture& image = frame.pair->left;
+  const io::LoadedImage& image = frame.pair->left;
   const ros::Header header = header_of(frame, form);
   return ros::encode(image.rgb.empty() ? ros::image_of(header, image.gray.view())
                                        : ros::image_of(header, image.rgb.view()));
@@ -40,7 +40,7 @@ Message left(const LiveFrame& frame, const MessageForm& form) {
 
 /// In pairs rectified here, colour and grey are interpolated separately, so grey may differ.
 Message left_grey(const LiveFrame& frame, const MessageForm& form) {
-  const io::Picture& image = frame.pair->left;
+  const io::LoadedImage& image = frame.pair->left;
   if (image.rgb.empty()) return std::nullopt;
   const Image<Gray> grey = io::grey_of(image.rgb.view());
   if (is_same(grey, image.gray)) return std::nullopt;
@@ -146,16 +146,16 @@ Message reject(const LiveFrame& frame, const MessageForm& form) {
   return ros::encode(ros::reject_of(header_of(frame, form), frame.step.frame));
 }
 
-template <Space space>
+template <ObstacleLabel space>
 Message cloud(const LiveFrame& frame, const MessageForm& form) {
-  const io::Picture& image = frame.pair->left;
+  const io::LoadedImage& image = frame.pair->left;
   return ros::encode(ros::cloud_of(header_of(frame, form), frame.step.frame, space, form.rig, image.gray,
                                    image.rgb, form.cloud_stride));
 }
 
 Message grid(const LiveFrame& frame, const MessageForm& form) {
   const auto found = ros::grid_of(ros::header_of(frame.step.stamp, names_of(frame, form).floor),
-                                  frame.step.frame, form.rig, frame.config->segmentation.space);
+                                  frame.step.frame, form.rig, frame.config->segmentation.obstacles);
   return found ? std::optional(ros::encode(*found)) : std::nullopt;
 }
 
@@ -214,8 +214,8 @@ constexpr std::array kTopics{
     of_ros<ros::DisparityImage>("disparity", disparity, &RecordWhat::disparity, 7),
     of_ros<ros::Image>("labels", labels, kMasks, 5, 2),
     of_ros<ros::Image>("reject", reject, kMasks, 6, 3),
-    of_ros<ros::PointCloud2>("obstacles", cloud<Space::obstacle>, kClouds, 8, 6),
-    of_ros<ros::PointCloud2>("floor", cloud<Space::floor>, kClouds, 9),
+    of_ros<ros::PointCloud2>("obstacles", cloud<ObstacleLabel::obstacle>, kClouds, 8, 6),
+    of_ros<ros::PointCloud2>("floor", cloud<ObstacleLabel::floor>, kClouds, 9),
     of_ros<ros::OccupancyGrid>("grid", grid, &RecordWhat::grid, 4),
     of_ros<ros::CompressedImage>("left", left_compressed, nullptr, 0, 1),
     of_ros<ros::Image>("disparity", disparity_picture, nullptr, 0, 4),

@@ -88,7 +88,7 @@ Json reliability_json(const Reliability& reliability) {
   return j;
 }
 
-Json track_json(const Track& track, const Step& step, const TrackLabels& shown,
+Json track_json(const Track& track, const TrackedFrame& step, const TrackLabels& shown,
                 const std::vector<LandmarkOfTrack>& landmarks) {
   Json j{{"id", number(track.id)},
          {"state", choice_name(track.state, kTrackStates)},
@@ -133,11 +133,11 @@ Json control_json(const ControlEvent& event) {
 }
 
 /// What the lines of events.jsonl begin with.
-Json event_of(const Step& step, const std::string& kind) {
+Json event_of(const TrackedFrame& step, const std::string& kind) {
   return {{"frame", step.index}, {"stamp_ns", step.stamp.ns}, {"kind", kind}};
 }
 
-Json landmark_event_of(const Step& step, const LandmarkEvent& event,
+Json landmark_event_of(const TrackedFrame& step, const LandmarkEvent& event,
                        const std::vector<LandmarkOfTrack>& landmarks) {
   Json j = event_of(step, choice_name(event.kind, kLandmarkEventKinds));
   j["stamp_ns"] = event.stamp.ns;
@@ -158,7 +158,7 @@ Json landmark_event_of(const Step& step, const LandmarkEvent& event,
 
 }  // namespace
 
-std::vector<Json> event_lines(const Step& step, const std::vector<LandmarkOfTrack>& landmarks,
+std::vector<Json> event_lines(const TrackedFrame& step, const std::vector<LandmarkOfTrack>& landmarks,
                               const std::vector<LandmarkEvent>& events) {
   std::vector<Json> lines;
   if (step.control) {
@@ -178,11 +178,11 @@ std::vector<Json> event_lines(const Step& step, const std::vector<LandmarkOfTrac
   return lines;
 }
 
-bool becomes_unreliable(const Step& step) {
+bool becomes_unreliable(const TrackedFrame& step) {
   return step.reliability.is_unreliable && step.reliability.weak_frames == kUnreliableFrames;
 }
 
-Json json_of(const Step& step, const std::string& name, const std::vector<LandmarkOfTrack>& landmarks,
+Json json_of(const TrackedFrame& step, const std::string& name, const std::vector<LandmarkOfTrack>& landmarks,
              const std::string& frame_id) {
   const TrackLabels shown = track_labels_of(step);
   Json tracks = Json::array();
@@ -198,7 +198,7 @@ Json json_of(const Step& step, const std::string& name, const std::vector<Landma
   return line;
 }
 
-std::string step_json(const Step& step, const std::string& name, const Landmarked& marked,
+std::string step_json(const TrackedFrame& step, const std::string& name, const LandmarkUpdate& marked,
                       const std::string& frame_id) {
   return json_text(json_of(step, name, marked.tracks, frame_id)) + "\n";
 }
@@ -268,7 +268,7 @@ void FollowFiles::append(std::ofstream& file, const char* name, const std::strin
     throw Error((folder_ / name).string() + ": cannot be written: " + std::generic_category().message(errno));
 }
 
-void FollowFiles::add(const Step& step, const std::string& line) {
+void FollowFiles::add(const TrackedFrame& step, const std::string& line) {
   append(tracks_, "tracks.jsonl", line);
   append(poses_, "poses.tum", pose_tum(step));
   append(masks_, "tracks.mots.txt", masks_mots(step));

@@ -18,7 +18,7 @@ std::string step_json(const TrackedFrame& step, const std::string& name, const L
                       const std::string& frame_id = {});
 
 /// Whether the frame is the one at which a run of weak frames is reported, in events.jsonl.
-bool becomes_unreliable(const Step& step);
+bool becomes_unreliable(const TrackedFrame& step);
 
 /// A line of poses.tum: "t x y z qx qy qz qw", t in s; empty if the pose is unknown.
 std::string pose_tum(const TrackedFrame& step);
@@ -38,7 +38,7 @@ class FollowFiles {
   explicit FollowFiles(std::filesystem::path folder);
 
   /// `line`: the frame's step_json(). Throws Error (names the file) if it cannot be written.
-  void add(const Step& step, const std::string& line);
+  void add(const TrackedFrame& step, const std::string& line);
   /// A line of events.jsonl, with the newline.
   void add_event(const std::string& line);
 

@@ -65,7 +65,7 @@ Json place_of_odometry(const std::optional<Pose>& pose) {
 }
 
 /// `line`: of tracks.jsonl, without frame_id.
-Json facts(Json line, const Step& step, std::optional<double> milliseconds,
+Json facts(Json line, const TrackedFrame& step, std::optional<double> milliseconds,
            const std::optional<Pose>& map_from_odom) {
   line["map_from_odom"] = place_of_odometry(map_from_odom);
   keep_covariance_of_place(line.at("pose"));
@@ -102,16 +102,16 @@ Json rig_json(const std::optional<StereoRig>& rig) {
 
 }  // namespace
 
-EncodedFrame encode_step(Json line, const Step& step, View<const Gray> left, View<const Rgb> left_rgb,
+EncodedFrame encode_step(Json line, const TrackedFrame& step, View<const Gray> left, View<const Rgb> left_rgb,
                          std::optional<double> milliseconds, const std::optional<Pose>& map_from_odom) {
   line.erase("frame_id");
   const Json maps{{"left", picture_as_uri(left, left_rgb)}, {"tracks", packed_tracks(step)}};
   return {for_script(facts(std::move(line), step, milliseconds, map_from_odom)), for_script(maps)};
 }
 
-EncodedFrame encode_step(const Step& step, const std::string& name, View<const Gray> left,
+EncodedFrame encode_step(const TrackedFrame& step, const std::string& name, View<const Gray> left,
                          View<const Rgb> left_rgb, std::optional<double> milliseconds,
-                         const Landmarked& marked) {
+                         const LandmarkUpdate& marked) {
   return encode_step(json_of(step, name, marked.tracks, {}), step, left, left_rgb, milliseconds,
                      marked.state.map_from_odom());
 }

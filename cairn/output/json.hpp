@@ -19,7 +19,7 @@ struct LandmarkOfTrack;
 struct PairMeasures;
 struct Pose;
 struct Point3;
-struct Step;
+struct TrackedFrame;
 struct Synchrony;
 struct Tuning;
 }  // namespace cairn
@@ -60,15 +60,15 @@ Json json_of(const PairMeasures& measures);
 Json json_of(const Synchrony& synchrony, const std::vector<std::string>& names);
 Json json_of(const Tuning& tuned, const std::vector<std::string>& names, std::uint32_t seed);
 /// A line of tracks.jsonl.
-Json json_of(const Step& step, const std::string& name, const std::vector<LandmarkOfTrack>& landmarks,
+Json json_of(const TrackedFrame& step, const std::string& name, const std::vector<LandmarkOfTrack>& landmarks,
              const std::string& frame_id);
 /// A frame of the player (follow_page.hpp) from its line of tracks.jsonl. `map_from_odom`: nullopt if unknown.
-EncodedFrame encode_step(Json line, const Step& step, View<const Gray> left, View<const Rgb> left_rgb,
+EncodedFrame encode_step(Json line, const TrackedFrame& step, View<const Gray> left, View<const Rgb> left_rgb,
                          std::optional<double> milliseconds, const std::optional<Pose>& map_from_odom);
 /// A frame of the page (web/html_page.hpp) with its objects.json; null: none.
 EncodedFrame encode_frame(const PageFrame& frame, Json result);
 /// The lines of events.jsonl of a step: options that control found, unreliability, then landmarks.
-std::vector<Json> event_lines(const Step& step, const std::vector<LandmarkOfTrack>& landmarks,
+std::vector<Json> event_lines(const TrackedFrame& step, const std::vector<LandmarkOfTrack>& landmarks,
                               const std::vector<LandmarkEvent>& events);
 
 }  // namespace cairn::io

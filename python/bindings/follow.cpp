@@ -140,14 +140,14 @@ class PyFollower {
         calibration_(std::move(calibration)),
         follower_(settings_.suited(calibration_.calibration), calibration_.rig(), exec) {}
 
-  std::tuple<Step, io::Provenance> next(const Picture& left, const Picture& right, std::int64_t ns,
-                                        const std::optional<MotionPrior>& prior,
-                                        const std::optional<Pose>& pose) {
+  std::tuple<TrackedFrame, io::Provenance> next(const LoadedImage& left, const LoadedImage& right,
+                                                std::int64_t ns, const std::optional<MotionPrior>& prior,
+                                                const std::optional<Pose>& pose) {
     const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
     calibration_.check(pair.size());
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
     const Config used = follower_.config().segmentation;  // the frame may change it for the next one
-    Step step = follower_.next(pair, Stamp{ns}, prior, pose);
+    TrackedFrame step = follower_.next(pair, Stamp{ns}, prior, pose);
     return {std::move(step), provenance(settings_, used, calibration_.rig(), Stamp{ns})};
   }
   std::vector<OptionInfo> options() {
@@ -163,8 +163,8 @@ class PyFollower {
 };
 
 struct FollowedFrame {
-  io::Picture left;
-  Step step;
+  io::LoadedImage left;
+  TrackedFrame step;
   io::Provenance how;
   std::string name;
   std::string frame_id;
@@ -308,9 +308,9 @@ void bind_results(py::module_& m) {
   shows(data, "odometry_suspect", [](const TrackedFrame& self) { return self.tracks.odometry_suspect; });
   shows(data, "reliability", &reliability_of);
   shows(data, "control", &control_of);
-  m.def("step_json", [](const Step& step, const std::string& name, const std::string& frame_id,
+  m.def("step_json", [](const TrackedFrame& step, const std::string& name, const std::string& frame_id,
                         const py::list& landmarks) {
-    Landmarked marked;
+    LandmarkUpdate marked;
     restore(landmarks, marked.tracks);
     const py::gil_scoped_release others_run;
     return io::step_json(step, name, marked, frame_id);

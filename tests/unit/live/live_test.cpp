@@ -344,7 +344,7 @@ TEST(Runner, APairMayBeProcessedInAnotherWay) {
   Notebook notebook;
   LiveOptions options = LiveOptions::unpaced();
   options.step = [](const io::SequenceFrame& pair, const FollowConfig&, const Exec&) {
-    Step step;
+    TrackedFrame step;
     step.stamp = {pair.stamp.ns + 1};
     return step;
   };
