@@ -92,10 +92,10 @@ class RowMaker {
       return batch::error_row(planned.name, error.what());
     }
     const LoadedFrame& loaded = read.loaded;
-    const io::Provenance provenance{loaded.preset, loaded.config, loaded.rig, {}, false, read.stamp_ns};
+    const output::Provenance provenance{loaded.preset, loaded.config, loaded.rig, {}, false, read.stamp_ns};
     if (!kept_.empty())
-      io::write_result(kept_ / planned.name, loaded.left.gray, loaded.left.rgb, frame, provenance);
-    return io::frame_row(planned.name, frame, provenance);
+      output::write_result(kept_ / planned.name, loaded.left.gray, loaded.left.rgb, frame, provenance);
+    return output::frame_row(planned.name, frame, provenance);
   }
 
  private:

@@ -61,7 +61,7 @@ class Planner {
  public:
   Planner(const BatchInputs& inputs, const Pool& pool)
       : inputs_(inputs),
-        range_(inputs.frames.empty() ? io::FrameRange{} : range_of(inputs.frames)),
+        range_(inputs.frames.empty() ? input::FrameRange{} : range_of(inputs.frames)),
         pool_(pool) {}
 
   PlannedFrames planned() && { return {std::move(frames_), std::move(sequences_)}; }
@@ -153,7 +153,7 @@ class Planner {
   }
 
   const BatchInputs& inputs_;
-  io::FrameRange range_;
+  input::FrameRange range_;
   const Pool& pool_;
   std::vector<PlannedFrame> frames_;
   std::vector<std::size_t> sequences_;

@@ -57,10 +57,10 @@ struct BatchSequence {
 };
 
 /// Parses --frames; empty: all. Throws Error.
-io::FrameRange range_of(const std::string& text);
+input::FrameRange range_of(const std::string& text);
 /// The indices of the frames of a sequence within the range. Reads files to the end, since the stated length
 /// of a video is an estimate. Throws Error.
-std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io::FrameRange& range,
+std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const input::FrameRange& range,
                                          const Pool& pool);
 
 /// Reads frames of sequences, in ascending order per sequence.

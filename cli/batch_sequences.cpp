@@ -15,16 +15,16 @@
 namespace cairn::cli {
 namespace {
 
-std::unique_ptr<io::Sequence> open(const BatchSequence& sequence, const io::FrameRange& range,
-                                   const Pool& pool) {
+std::unique_ptr<input::Sequence> open(const BatchSequence& sequence, const input::FrameRange& range,
+                                      const Pool& pool) {
   // Silences FFmpeg, which prints to stderr; "-8" is its quiet level.
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
-  io::SourceOptions options;
+  input::SourceOptions options;
   options.calib = sequence.calib;
   options.layout = sequence.layout;
   options.rectify = sequence.rectify;
   options.frames = range;
-  return io::open_sequence(sequence.source, options, pool);
+  return input::open_sequence(sequence.source, options, pool);
 }
 
 /// Frame folders keep their numbers if a right image is missing; other sources do not.
@@ -40,7 +40,7 @@ std::optional<std::size_t> count_in_folder(const std::string& source) {
 
 }  // namespace
 
-std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io::FrameRange& range,
+std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const input::FrameRange& range,
                                          const Pool& pool) {
   const auto opened = open(sequence, range, pool);
   if (opened->status().is_live) {
@@ -54,7 +54,7 @@ std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io
   };
   std::error_code unknown;
   const std::filesystem::path left = sequence.source.substr(0, sequence.source.find(','));
-  const bool is_video = std::filesystem::is_regular_file(left, unknown) || io::recording_in(left);
+  const bool is_video = std::filesystem::is_regular_file(left, unknown) || input::recording_in(left);
   if (!is_video) {  // image lists: no need to decode any
     std::size_t end = range.first + opened->size().value_or(0) * range.step;
     if (const auto all = count_in_folder(sequence.source))
@@ -68,19 +68,19 @@ std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const io
   return frames;
 }
 
-io::FrameRange range_of(const std::string& text) {
-  return io::parse_frame_range(text);
+input::FrameRange range_of(const std::string& text) {
+  return input::parse_frame_range(text);
 }
 
 struct SequenceReader::State {
   ConfigOptions config;
   Pool pool;
   BatchSequence of;
-  std::unique_ptr<io::Sequence> opened;         // the source being read sequentially
-  std::optional<io::SequenceFrame> read_ahead;  // a frame already read, if earlier ones were skipped
-  std::size_t next = 0;                         // first frame not yet passed
+  std::unique_ptr<input::Sequence> opened;         // the source being read sequentially
+  std::optional<input::SequenceFrame> read_ahead;  // a frame already read, if earlier ones were skipped
+  std::size_t next = 0;                            // first frame not yet passed
 
-  [[nodiscard]] BatchFrame loaded(io::SequenceFrame frame, const io::Sequence& from) const {
+  [[nodiscard]] BatchFrame loaded(input::SequenceFrame frame, const input::Sequence& from) const {
     BatchFrame made;
     made.stamp_ns = frame.stamp.ns;
     made.loaded.left = std::move(frame.left);
@@ -102,7 +102,7 @@ struct SequenceReader::State {
   }
 
   /// The frame, if sequential reading reaches it.
-  std::optional<io::SequenceFrame> read_on(std::size_t index) {
+  std::optional<input::SequenceFrame> read_on(std::size_t index) {
     try {
       if (!opened || index < next) {
         read_ahead.reset();
@@ -149,7 +149,7 @@ struct TrackRows::State {
   ConfigOptions config;
   const Exec& exec;
   BatchSequence of;
-  std::unique_ptr<io::Sequence> opened;
+  std::unique_ptr<input::Sequence> opened;
   std::unique_ptr<live::Runner> run;
   live::LiveFramePtr read_ahead;
   std::size_t next = 0;  // next frame to follow
@@ -163,7 +163,7 @@ struct TrackRows::State {
     ended.clear();
     try {
       opened = open(of, {of.first, {}, of.step}, exec.pool);
-      run = std::make_unique<live::Runner>(*opened, of.source, io::SensorFiles{},
+      run = std::make_unique<live::Runner>(*opened, of.source, live::SensorFiles{},
                                            resolve_follow(config, opened->disparities(), opened->ground()),
                                            live::LiveOptions::unpaced(), exec);
     } catch (const Error& error) {
@@ -180,10 +180,10 @@ struct TrackRows::State {
       if (!read_ahead) read_ahead = run->next();
       if (!read_ahead || read_ahead->pair->index != index)
         return batch::error_row(name, of.source + ": frame " + std::to_string(index) + " cannot be read");
-      io::Json line = *results_of(*std::exchange(read_ahead, nullptr), {});
+      output::Json line = *results_of(*std::exchange(read_ahead, nullptr), {});
       line["frame"] = name;
       line.erase("name");
-      return io::json_text(line);
+      return output::json_text(line);
     } catch (const Error& error) {
       ended = error.what();
       return batch::error_row(name, ended);

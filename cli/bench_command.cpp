@@ -27,9 +27,9 @@ namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using io::Json;
-using report::FrameTimes;
-using report::Samples;
+using output::Json;
+using timing::FrameTimes;
+using timing::Samples;
 
 struct BenchOptions {
   InputOptions input;
@@ -94,7 +94,7 @@ Subject draw(const BenchOptions& options) {
   const MatchConfig& match = resolved.config.match;
   const int farthest_seen =
       match.min_disparity + static_cast<int>(kShareOfRange * static_cast<float>(match.num_disparities));
-  report::DrawnPair drawn = report::draw_pair(size, static_cast<float>(std::max(1, farthest_seen)));
+  timing::DrawnPair drawn = timing::draw_pair(size, static_cast<float>(std::max(1, farthest_seen)));
   Subject subject;
   subject.name = "rendered room";
   subject.drawn = true;
@@ -151,10 +151,10 @@ Subject load(const BenchOptions& options, const Exec& exec) {
   return subject;
 }
 
-report::Limits limits_of(const BenchOptions& options) {
-  constexpr report::Limits kByDefault{.frames = 100, .seconds = 10};
+timing::Limits limits_of(const BenchOptions& options) {
+  constexpr timing::Limits kByDefault{.frames = 100, .seconds = 10};
   if (!options.frames && !options.seconds) return kByDefault;
-  report::Limits limits;
+  timing::Limits limits;
   if (options.frames) limits.frames = *options.frames;
   if (options.seconds) limits.seconds = *options.seconds;
   return limits;
@@ -169,11 +169,11 @@ struct Quantiles {
 };
 
 Quantiles quantiles(const std::vector<double>& values) {
-  return {report::percentile(values, 0), report::percentile(values, 0.5), report::percentile(values, 0.99)};
+  return {timing::percentile(values, 0), timing::percentile(values, 0.5), timing::percentile(values, 0.99)};
 }
 
 double median_wall(const Samples& samples) {
-  return report::percentile(samples.wall_ms, 0.5);
+  return timing::percentile(samples.wall_ms, 0.5);
 }
 
 struct Accuracy {
@@ -192,14 +192,14 @@ std::optional<Accuracies> accuracies_of(const Subject& subject, const FrameTimes
   const MatchConfig& match = subject.config.match;
   Accuracies all;
   const int searched =
-      times.peers.empty() ? match.num_disparities : report::searched_by_opencv(match.num_disparities);
+      times.peers.empty() ? match.num_disparities : timing::searched_by_opencv(match.num_disparities);
   all.from_column = std::max(0, match.min_disparity + searched);
   const auto add = [&](std::string name, View<const float> disparity_px) {
     all.rows.push_back({std::move(name), disparity_errors(disparity_px, subject.truth->disparity_px,
                                                           subject.truth->hidden, all.from_column)});
   };
   add("cairn", times.disparity_px);
-  for (const report::PeerTimes& peer : times.peers) {
+  for (const timing::PeerTimes& peer : times.peers) {
     if (peer.refusal.empty()) add(std::string(peer.matcher->name), peer.disparity_px);
   }
   return all;
@@ -229,7 +229,7 @@ std::string heading(const Findings& found) {
          std::string(name(active_target(found.exec))) + " (supported:" + supported + ")\n" + "measured    " +
          std::to_string(found.times.frames()) + (found.times.frames() == 1 ? " frame" : " frames") +
          " after a warm-up frame of " + text_of("%.1f ms", found.times.first_frame_ms) + ", on " +
-         report::processor() + "\n";
+         timing::processor() + "\n";
 }
 
 std::string stage_table(const FrameTimes& times) {
@@ -240,7 +240,7 @@ std::string stage_table(const FrameTimes& times) {
     table.add({stage, ms(wall.median), ms(wall.p99), ms(quantiles(samples.cpu_ms).median),
                percent(wall.median / frame_ms)});
   };
-  for (const report::StageTimes& stage : times.stages) add(stage.name, stage.times);
+  for (const timing::StageTimes& stage : times.stages) add(stage.name, stage.times);
   add("disparity stages", times.disparity);
   add("frame", times.frame);
   return table.text();
@@ -259,17 +259,17 @@ std::string summary(const Findings& found) {
 }
 
 std::string peer_table(const Findings& found) {
-  if (report::quick_opencv_matchers().empty()) return "OpenCV's matchers are not built in.\n";
+  if (timing::quick_opencv_matchers().empty()) return "OpenCV's matchers are not built in.\n";
   const FrameTimes& times = found.times;
   if (times.peers.empty()) return {};
-  Table table({"OpenCV " + std::string(report::opencv_version()), "median ms", "p99 ms", "CPU ms",
+  Table table({"OpenCV " + std::string(timing::opencv_version()), "median ms", "p99 ms", "CPU ms",
                "our disparity", "our frame"});
   const auto ratio = [](const Samples& ours, const Samples& theirs) {
     return text_of("x %.2f", median_wall(ours) / median_wall(theirs));
   };
   std::string refusals;
   bool some = false;
-  for (const report::PeerTimes& peer : times.peers) {
+  for (const timing::PeerTimes& peer : times.peers) {
     const std::string name(peer.matcher->name);
     if (!peer.refusal.empty()) {
       refusals += name + " cannot match this pair: " + peer.refusal + "\n";
@@ -306,7 +306,7 @@ std::string accuracy_table(const Findings& found) {
 
 /// ms rounded to ns, the clock's resolution.
 Json json(double value) {
-  return io::rounded(value);
+  return output::rounded(value);
 }
 
 Json json(const std::vector<double>& milliseconds) {
@@ -320,7 +320,7 @@ Json json(const Samples& samples) {
 
 Json stages_json(const FrameTimes& times) {
   Json all = Json::array();
-  for (const report::StageTimes& stage : times.stages) {
+  for (const timing::StageTimes& stage : times.stages) {
     Json j{{"name", stage.name}, {"for_disparity", stage.for_disparity}};
     j.update(json(stage.times));
     all.push_back(std::move(j));
@@ -331,7 +331,7 @@ Json stages_json(const FrameTimes& times) {
 Json opencv_json(const Findings& found) {
   if (found.times.peers.empty()) return nullptr;
   Json matchers = Json::array();
-  for (const report::PeerTimes& peer : found.times.peers) {
+  for (const timing::PeerTimes& peer : found.times.peers) {
     const bool ran = peer.refusal.empty();
     Json j{{"name", peer.matcher->name},
            {"settings", peer.matcher->settings},
@@ -339,7 +339,7 @@ Json opencv_json(const Findings& found) {
     j.update(ran ? json(peer.times) : Json{{"wall_ms", nullptr}, {"cpu_ms", nullptr}});
     matchers.push_back(std::move(j));
   }
-  return {{"version", report::opencv_version()}, {"matchers", matchers}};
+  return {{"version", timing::opencv_version()}, {"matchers", matchers}};
 }
 
 Json accuracy_json(const Findings& found) {
@@ -375,9 +375,9 @@ std::string bench_json(const Findings& found) {
                {"colour", !subject.left.rgb.empty()},
                {"calibrated", subject.rig.has_value()}};
   j["preset"] = subject.preset;
-  j["config"] = io::json_of(subject.config);
-  j["machine"] = {{"processor", report::processor()},
-                  {"compiler", report::compiler()},
+  j["config"] = output::json_of(subject.config);
+  j["machine"] = {{"processor", timing::processor()},
+                  {"compiler", timing::compiler()},
                   {"threads", found.exec.threads()},
                   {"target", std::string(name(active_target(found.exec)))},
                   {"supported_targets", targets}};
@@ -395,7 +395,7 @@ std::string bench_json(const Findings& found) {
   j["opencv"] = opencv_json(found);
   j["accuracy"] = accuracy_json(found);
   // A file name that is not UTF-8 is not an error.
-  return io::json_text(j, 1) + "\n";
+  return output::json_text(j, 1) + "\n";
 }
 
 int bench(const BenchOptions& options, bool drawn) {
@@ -404,11 +404,11 @@ int bench(const BenchOptions& options, bool drawn) {
   found.exec = make_exec(options.exec);
   found.subject = drawn ? draw(options) : load(options, found.exec);
   const Subject& subject = found.subject;
-  report::set_opencv_threads(found.exec.threads());
+  timing::set_opencv_threads(found.exec.threads());
   const auto peers =
-      options.no_opencv ? std::span<const report::OpenCvMatcher>() : report::quick_opencv_matchers();
+      options.no_opencv ? std::span<const timing::OpenCvMatcher>() : timing::quick_opencv_matchers();
   found.times =
-      report::time_frames(subject.pair(), subject.rig, subject.config, found.exec, limits_of(options), peers);
+      timing::time_frames(subject.pair(), subject.rig, subject.config, found.exec, limits_of(options), peers);
   found.accuracies = accuracies_of(subject, found.times);
   if (options.json) io::write_file(*options.json, bench_json(found));
   std::cout << heading(found) << "\n" << stage_table(found.times) << "\n" << summary(found);

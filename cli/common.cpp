@@ -220,7 +220,7 @@ std::vector<std::optional<std::int64_t>> stamps_of(const InputOptions& options,
   std::error_code unknown;
   if (!fs::is_directory(options.left, unknown)) return stamps;
   try {
-    const auto known = io::stamps_in(options.left, frames);
+    const auto known = input::stamps_in(options.left, frames);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (const auto found = known.find(frames[i].left); found != known.end()) stamps[i] = found->second.ns;
     }
@@ -311,7 +311,7 @@ Stopwatch::~Stopwatch() {
 
 double Stopwatch::total_ms() const {
   double sum = 0;
-  for (const io::StageTime& time : times_) sum += time.milliseconds;
+  for (const output::StageTime& time : times_) sum += time.milliseconds;
   return sum;
 }
 

@@ -98,12 +98,12 @@ class Stopwatch {
   ~Stopwatch();
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
-  [[nodiscard]] const std::vector<io::StageTime>& times() const { return times_; }
+  [[nodiscard]] const std::vector<output::StageTime>& times() const { return times_; }
   [[nodiscard]] double total_ms() const;
 
  private:
   Exec& exec_;
-  std::vector<io::StageTime> times_;
+  std::vector<output::StageTime> times_;
 };
 
 // ---- text ----

@@ -93,10 +93,10 @@ int estimate(const DisparityOptions& options) {
   const StereoResult scene = estimate_disparity(
       StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config, exec);
   if (!options.output.empty()) io::save_disparity(options.output, scene.disparity.disparity_px);
-  if (!options.confidence.empty()) io::save_confidence(options.confidence, scene.confidence);
+  if (!options.confidence.empty()) output::save_confidence(options.confidence, scene.confidence);
   if (!options.view.empty()) {
     const Image<Rgb> picture =
-        io::draw_disparity(scene.disparity, loaded.rig, reasons_in_force(loaded.config));
+        output::draw_disparity(scene.disparity, loaded.rig, reasons_in_force(loaded.config));
     io::save_png(options.view, picture.view());
   }
   if (!options.ply.empty()) {

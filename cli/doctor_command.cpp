@@ -18,7 +18,7 @@
 namespace cairn::cli {
 namespace {
 
-using io::Json;
+using output::Json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestSequence = 60;  // pairs held in memory at a time
@@ -309,7 +309,7 @@ std::string numbers_text(const std::vector<ExaminedPair>& pairs) {
     return {};
   Table table(several ? std::vector<std::string>{"measured", "least", "median", "most"}
                       : std::vector<std::string>{"measured", ""});
-  for (const io::PairNumber& number : io::pair_numbers()) {
+  for (const output::PairNumber& number : output::pair_numbers()) {
     std::vector<double> values;
     for (const ExaminedPair& pair : pairs) {
       if (pair.measures) values.push_back(number.of(*pair.measures));
@@ -458,7 +458,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   Json j{{"cairn", CAIRN_VERSION}, {"broken", is_broken}, {"pairs_in_all", diagnosis.pairs_in_all}};
   j["findings"] = Json::array();
   for (const Finding& finding : diagnosis.findings)
-    j["findings"].push_back(io::json_of(finding, names_of(diagnosis.pairs)));
+    j["findings"].push_back(output::json_of(finding, names_of(diagnosis.pairs)));
   j["not_checked"] = Json::array();
   for (const Omission& one : omissions(diagnosis)) {
     Json pairs = Json::array();
@@ -472,13 +472,13 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   j["pairs"] = Json::array();
   for (const ExaminedPair& pair : diagnosis.pairs) {
     Json one{{"name", pair.name}, {"width", pair.size->width}, {"height", pair.size->height}};
-    one["measured"] = pair.measures ? io::json_of(*pair.measures) : Json(nullptr);
+    one["measured"] = pair.measures ? output::json_of(*pair.measures) : Json(nullptr);
     j["pairs"].push_back(std::move(one));
   }
   j["synchrony"] = nullptr;
   if (diagnosis.sequence && !diagnosis.sequence->names.empty())
-    j["synchrony"] = io::json_of(diagnosis.sequence->synchrony, diagnosis.sequence->names);
-  return io::json_text(j, 1) + "\n";
+    j["synchrony"] = output::json_of(diagnosis.sequence->synchrony, diagnosis.sequence->names);
+  return output::json_text(j, 1) + "\n";
 }
 
 int examine_and_tell(const DoctorOptions& options) {

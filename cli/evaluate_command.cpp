@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using cli::json;  // next to the overloads below
-using io::Json;
+using output::Json;
 
 struct EvaluateOptions {
   std::vector<std::string> folders;  // as given: results, then truth
@@ -75,18 +75,18 @@ struct FrameScore {
   std::optional<DisparityErrors> all;
   bool knows_occlusion = false;
   std::optional<ConfidentPixels> confident;  // nullopt without confidence.png
-  std::vector<io::StageTime> times;          // empty without objects.json, or if it has no times
-  io::EncodedFrame page;                     // empty without --html
+  std::vector<output::StageTime> times;      // empty without objects.json, or if it has no times
+  output::EncodedFrame page;                 // empty without --html
 };
 
 /// The time of each stage according to objects.json.
-std::vector<io::StageTime> load_times(const fs::path& objects_json) {
+std::vector<output::StageTime> load_times(const fs::path& objects_json) {
   constexpr std::size_t kMax = std::size_t{256} << 20;
   const std::string text = io::read_file(objects_json, kMax);
   try {
     const Json whole = Json::parse(text);
     const Json by_stage = whole.value("timings_ms", Json::object());
-    std::vector<io::StageTime> times;
+    std::vector<output::StageTime> times;
     for (const auto& [stage, milliseconds] : by_stage.items())
       times.push_back({stage, milliseconds.get<double>()});
     return times;
@@ -143,7 +143,7 @@ FrameScore score_frame(const ResultFiles& result, const io::TruthFiles& truth,
     require_equal_size(*result.objects, ours.size(), *truth.objects, theirs.size());
     score.objects = FrameObjects{object_errors(ours, theirs, options.objects), truth.partial};
     if (result.json) {
-      for (const auto& object : io::load_confidences(*result.json))
+      for (const auto& object : output::load_confidences(*result.json))
         score.confidence[object.id] = object.confidence;
     }
   }
@@ -506,7 +506,7 @@ Json frame_disparity_json(const FrameScore& frame) {
 
 Json frame_json(const FrameScore& frame) {
   Json times = nullptr;
-  for (const io::StageTime& time : frame.times) times[time.stage] = json(time.milliseconds);
+  for (const output::StageTime& time : frame.times) times[time.stage] = json(time.milliseconds);
   return {{"name", frame.name},
           {"objects", frame_objects_json(frame)},
           {"disparity", frame_disparity_json(frame)},
@@ -590,7 +590,7 @@ Json evaluation_json(const Scores& scores, const EvaluateOptions& options) {
   Json j;
   j["cairn"] = CAIRN_VERSION;
   j["options"] = {{"min_area_px", options.objects.min_area},
-                  {"boundary_tolerance_percent", io::shortest(options.objects.boundary_tolerance)},
+                  {"boundary_tolerance_percent", output::shortest(options.objects.boundary_tolerance)},
                   {"skip_left_px", options.skip_left}};
   j["summary"] = {{"objects", summary_objects_json(scores.frames)},
                   {"disparity", summary_disparity_json(scores.frames)},
@@ -606,12 +606,13 @@ Json evaluation_json(const Scores& scores, const EvaluateOptions& options) {
 constexpr const char* kPageName = "evaluation.html";
 
 void write_page(Scores& scores, const EvaluateOptions& options, std::string as_json) {
-  std::vector<io::EncodedFrame> frames;
+  std::vector<output::EncodedFrame> frames;
   frames.reserve(scores.frames.size());
   for (FrameScore& frame : scores.frames) frames.push_back(std::move(frame.page));
-  const io::PageHead head{"evaluate", name_of(options.results.front()) + " against " + name_of(options.truth),
-                          std::move(as_json)};
-  const std::string page = io::html_page(head, frames);
+  const output::PageHead head{"evaluate",
+                              name_of(options.results.front()) + " against " + name_of(options.truth),
+                              std::move(as_json)};
+  const std::string page = output::html_page(head, frames);
   io::make_folder(*options.html);
   io::write_file(fs::path(*options.html) / kPageName, page);
 }
@@ -740,8 +741,8 @@ int evaluate(EvaluateOptions& options) {
   if (options.csv) io::write_file(*options.csv, csv_of(runs));
   if (options.json || options.html) {
     const Json as_json = evaluation_json(scores, options);
-    if (options.json) io::write_file(*options.json, io::json_text(as_json, 1) + "\n");
-    if (options.html) write_page(scores, options, io::json_text(as_json));
+    if (options.json) io::write_file(*options.json, output::json_text(as_json, 1) + "\n");
+    if (options.html) write_page(scores, options, output::json_text(as_json));
   }
   std::cout << frame_table(scores.frames) << "\n"
             << object_lines(scores.frames, options) << disparity_lines(scores.frames, options.skip_left);

@@ -96,9 +96,9 @@ Image<T> shown_map(const std::optional<fs::path>& path, Load load, SizeCheck& ch
 
 }  // namespace
 
-io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& truth) {
+output::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& truth) {
   SizeCheck check;
-  io::PageFrame shown;
+  output::PageFrame shown;
   shown.name = result.name;
   const std::optional<fs::path> none;
   const auto objects = shown_map<ObjectId>(
@@ -141,11 +141,11 @@ io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& t
     shown.left_rgb = left.rgb;
   }
   if (result.json) {
-    (void)io::load_confidences(*result.json);  // rejects a file that is no objects.json, with its name
+    (void)output::load_confidences(*result.json);  // rejects a file that is no objects.json, with its name
     constexpr std::size_t kMax = std::size_t{256} << 20;
     shown.objects_json = io::read_file(*result.json, kMax);
   }
-  return io::encode_frame(shown);
+  return output::encode_frame(shown);
 }
 
 }  // namespace cairn::cli

@@ -34,6 +34,6 @@ void require_equal_size(const std::filesystem::path& ours, Size our_size, const 
 
 /// A result next to its truth, for the page of --html. The left image is the one next to the truth, if any.
 /// Throws Error if two maps differ in size.
-io::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& truth);
+output::EncodedFrame encode_frame(const ResultFiles& result, const io::TruthFiles& truth);
 
 }  // namespace cairn::cli

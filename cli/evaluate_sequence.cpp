@@ -51,8 +51,8 @@ Json json(const TrackErrors& e) {
 
 Json places_json(const std::vector<double>& errors_m) {
   return {{"compared", errors_m.size()},
-          {"median_m", json(report::percentile(errors_m, 0.5))},
-          {"p95_m", json(report::percentile(errors_m, 0.95))}};
+          {"median_m", json(timing::percentile(errors_m, 0.5))},
+          {"p95_m", json(timing::percentile(errors_m, 0.95))}};
 }
 
 Json json(const TrajectoryError& e) {
@@ -100,7 +100,7 @@ Json changes_json(const ChangeErrors& e) {
           {"wrong", e.wrong},
           {"precision", json(share(e.reported - e.wrong, e.reported))},
           {"recall", json(share(e.found, e.expected))},
-          {"median_error_m", json(report::percentile(e.errors_m, 0.5))}};
+          {"median_error_m", json(timing::percentile(e.errors_m, 0.5))}};
 }
 
 Json summary_json(const SequenceScores& s) {
@@ -132,7 +132,7 @@ Json summary_json(const SequenceScores& s) {
             {"in_camera", places_json(s.places.in_camera_m)},
             {"with_covariance", s.places.stated},
             {"inside_95", json(share(s.places.inside, s.places.stated))},
-            {"median_nees", json(report::percentile(s.places.normalised, 0.5))}}},
+            {"median_nees", json(timing::percentile(s.places.normalised, 0.5))}}},
           {"moving", moving_json(s.moving)},
           {"landmarks", landmarks_json(s.landmarks)},
           {"changes", changes_json(s.changes)},
@@ -197,17 +197,17 @@ std::string place_lines(const PlaceErrors& places) {
     return "positions           not compared: no place in the truth, or no match\n";
   std::string all;
   if (!places.in_map_m.empty()) {
-    all += "positions           in the map: median " + metres(report::percentile(places.in_map_m, 0.5)) +
-           "   95 % below " + metres(report::percentile(places.in_map_m, 0.95)) + "   of " +
+    all += "positions           in the map: median " + metres(timing::percentile(places.in_map_m, 0.5)) +
+           "   95 % below " + metres(timing::percentile(places.in_map_m, 0.95)) + "   of " +
            std::to_string(places.in_map_m.size()) + "\n";
   }
   all += std::string(all.empty() ? "positions           " : "                    ") +
-         "from the camera: median " + metres(report::percentile(places.in_camera_m, 0.5)) + "   95 % below " +
-         metres(report::percentile(places.in_camera_m, 0.95)) + "\n";
+         "from the camera: median " + metres(timing::percentile(places.in_camera_m, 0.5)) + "   95 % below " +
+         metres(timing::percentile(places.in_camera_m, 0.95)) + "\n";
   if (places.stated > 0) {
     all += "                    within the stated 95 % ellipsoid: " +
            percent(share(places.inside, places.stated)) + "   NEES: median " +
-           text_of("%.2f", report::percentile(places.normalised, 0.5)) + " (2.37 if correct)\n";
+           text_of("%.2f", timing::percentile(places.normalised, 0.5)) + " (2.37 if correct)\n";
   }
   return all;
 }
@@ -271,7 +271,7 @@ std::string lines_of(const SequenceScores& s) {
            std::to_string(s.changes.expected) + "   wrong: " + std::to_string(s.changes.wrong) + " of " +
            std::to_string(s.changes.reported) + " reported";
     if (!s.changes.errors_m.empty())
-      all += "   displacement error " + metres(report::percentile(s.changes.errors_m, 0.5));
+      all += "   displacement error " + metres(timing::percentile(s.changes.errors_m, 0.5));
     all += "\n";
   }
   if (s.trajectory) all += trajectory_lines(*s.trajectory);
@@ -298,8 +298,8 @@ std::string run_table(const std::vector<SequenceScores>& runs) {
                points(s.tracks.ass_a), points(s.tracks.id_f1), std::to_string(s.tracks.switches),
                points(s.objects.recall_50()), points(s.objects.recall_75()), points(s.objects.precision_50()),
                points(s.objects.mean_error), std::to_string(s.steadiness.found_again),
-               text_of("%.3f", report::percentile(s.places.in_map_m, 0.5)),
-               text_of("%.3f", report::percentile(s.places.in_map_m, 0.95)),
+               text_of("%.3f", timing::percentile(s.places.in_map_m, 0.5)),
+               text_of("%.3f", timing::percentile(s.places.in_map_m, 0.95)),
                s.trajectory ? text_of("%.2f", 100 * s.trajectory->end_drift) : ""});
   }
   return table.text();
@@ -312,7 +312,7 @@ int evaluate_sequence(const EvaluateSequenceOptions& options) {
     throw Error("--json " + *options.json + ": needs one run, found " +
                 std::to_string(options.results.size()) + "; --csv accepts several");
   }
-  const io::TrueSequence truth = io::load_truth(options.truth);
+  const input::TrueSequence truth = input::load_truth(options.truth);
   std::vector<SequenceScores> runs;
   for (const std::string& result : options.results)
     runs.push_back(score_sequence(result, truth, {options.min_area, options.tentative}));
@@ -340,11 +340,11 @@ int evaluate_trajectory(const EvaluateSequenceOptions& options) {
     throw Error("--json " + *options.json + ": needs one run, found " +
                 std::to_string(options.results.size()) + "; --csv accepts several");
   }
-  const io::Trajectory truth = io::load_trajectory(options.truth);
+  const output::Trajectory truth = output::load_trajectory(options.truth);
   std::vector<std::pair<std::string, Json>> summaries;
   std::string text;
   for (const std::string& result : options.results) {
-    io::Trajectory ours = io::load_trajectory(result);
+    output::Trajectory ours = output::load_trajectory(result);
     if (ours.has_stamps != truth.has_stamps) {
       // KITTI poses have no stamps, so they are matched by index; both sides need the same number.
       if (ours.poses.size() != truth.poses.size()) {
@@ -356,7 +356,7 @@ int evaluate_trajectory(const EvaluateSequenceOptions& options) {
     }
     const TrajectoryError error = trajectory_error(ours.poses, truth.poses);
     if (error.compared < 2) {
-      const auto seconds = [](const io::Trajectory& file) {
+      const auto seconds = [](const output::Trajectory& file) {
         return text_of("%.2f", seconds_between({}, file.poses.front().stamp)) + " to " +
                text_of("%.2f s", seconds_between({}, file.poses.back().stamp));
       };

@@ -68,7 +68,7 @@ class FollowConsole : public live::Sink {
     progress_.clear();
     if (prints_) std::cout << line_of(step, name) << "\n";
     if (step.control) std::cerr << name << ": " << control_line(*step.control) << "\n";
-    if (io::becomes_unreliable(step)) std::cerr << unreliable_line(step, name) << "\n";
+    if (output::becomes_unreliable(step)) std::cerr << unreliable_line(step, name) << "\n";
     for (const LandmarkEvent& event : frame->events) {
       if (prints_) std::cout << event_line(event) << "\n";
     }

@@ -61,7 +61,7 @@ void add_sensor_options(CLI::App& app, SensorInput& input) {
       ->type_name("X,Y,DEG");
 }
 
-io::SensorFiles sensor_files(const SensorInput& input, const io::Sequence& source) {
+live::SensorFiles sensor_files(const SensorInput& input, const input::Sequence& source) {
   refuse_two_priors(input.odometry, input.imu);
   if (!input.poses.empty() && !(input.odometry.empty() && input.imu.empty()))
     throw Error("--poses: already gives the motion, expected neither --odometry nor --imu");

@@ -32,7 +32,7 @@ struct SensorInput {
 };
 void add_sensor_options(CLI::App& app, SensorInput& input);
 /// Throws Error for options that exclude each other, or do not suit the source.
-io::SensorFiles sensor_files(const SensorInput& input, const io::Sequence& source);
+live::SensorFiles sensor_files(const SensorInput& input, const input::Sequence& source);
 
 /// The base preset.
 std::string preset_of(const ConfigOptions& options);

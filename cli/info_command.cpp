@@ -35,7 +35,7 @@ int show(const ExecOptions& options) {
             << built_in("SIMD (Highway)", CAIRN_WITH_HWY != 0, "libhwy-dev, CAIRN_SIMD=ON")
             << built_in("threads (oneTBB)", CAIRN_WITH_TBB != 0, "libtbb-dev, CAIRN_TBB=ON")
             << built_in("calibrate, rectify", CAIRN_WITH_CALIBRATION != 0, "libopencv-calib3d-dev")
-            << built_in("OpenCV's matchers in bench", !report::opencv_version().empty(),
+            << built_in("OpenCV's matchers in bench", !timing::opencv_version().empty(),
                         "libopencv-calib3d-dev")
             << built_in("sequences: follow, odometry, map, record", CAIRN_WITH_SEQUENCES != 0,
                         "libopencv-video-dev libopencv-calib3d-dev libeigen3-dev libdlib-dev "

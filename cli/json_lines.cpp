@@ -44,11 +44,11 @@ void JsonLines::offer(const live::LiveFramePtr& frame) {
 
 std::string JsonLines::line_of(const live::LiveFrame& frame) const {
   if (form_.tracks) return *text_of(frame, form_);
-  const io::SequenceFrame& pair = *frame.pair;
-  io::Json line{{"name", pair.name}, {"stamp_ns", frame.step.stamp.ns}};
+  const input::SequenceFrame& pair = *frame.pair;
+  output::Json line{{"name", pair.name}, {"stamp_ns", frame.step.stamp.ns}};
   if (!pair.frame_id.empty()) line["frame_id"] = pair.frame_id;
   line.update(*results_of(frame, form_));
-  return io::json_text(line) + "\n";
+  return output::json_text(line) + "\n";
 }
 
 }  // namespace cairn::cli

@@ -94,7 +94,7 @@ int live_command(LiveCommandOptions options) {
   check(run.view);
   const Exec exec = make_exec(run.exec);
   const auto open = [&] { return open_source(run.source, exec.pool); };
-  const std::unique_ptr<io::Sequence> source = options.loop ? live::looped(open) : open();
+  const std::unique_ptr<input::Sequence> source = options.loop ? live::looped(open) : open();
   if (options.has_pace && source->status().is_live)
     throw Error("--pace: is for files, " + source->name() + " is a camera, which sets its own");
   const FollowConfig config = [&] {

@@ -19,7 +19,7 @@ void add_ros2_options(CLI::App& app, Ros2CommandOptions& options) {
       ->type_name("NAME");
 }
 
-std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, const io::Sequence& source) {
+std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, const input::Sequence& source) {
   if (options.is_wanted->count() == 0) {
     if (!options.frame.empty()) throw Error("--ros2-frame: needs --ros2");
     if (!options.holes.empty()) throw Error("--ros2-holes: needs --ros2");

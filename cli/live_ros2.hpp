@@ -18,6 +18,6 @@ struct Ros2CommandOptions {
 };
 void add_ros2_options(CLI::App& app, Ros2CommandOptions& options);
 /// Publishes from now on; null without --ros2. Throws Error.
-std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, const io::Sequence& source);
+std::unique_ptr<live::Sink> make_ros2_sink(const Ros2CommandOptions& options, const input::Sequence& source);
 
 }  // namespace cairn::cli

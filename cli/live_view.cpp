@@ -10,7 +10,7 @@
 namespace cairn::cli {
 namespace {
 
-live::ViewedRun viewed(live::Runner& runner, live::Recorder& recorder, const io::Sequence& source,
+live::ViewedRun viewed(live::Runner& runner, live::Recorder& recorder, const input::Sequence& source,
                        const std::string& preset) {
   live::ViewedRun run;
   run.name = source.name();
@@ -80,7 +80,7 @@ void check(const ViewInput& input) {
 }
 
 std::unique_ptr<live::Sink> make_view(const ViewInput& input, live::Runner& runner, live::Recorder& recorder,
-                                      const io::Sequence& source, const std::string& preset) {
+                                      const input::Sequence& source, const std::string& preset) {
   if (!input.is_wanted) return nullptr;
   live::ViewOptions options = input.options;
   if (!input.address.empty()) live::read_view_address(input.address, options);

@@ -25,6 +25,6 @@ void check(const ViewInput& input);
 /// Null without --view. Prints the address on stderr. Throws Error like live::ViewServer. The runner, the
 /// recorder and the source must outlive it.
 std::unique_ptr<live::Sink> make_view(const ViewInput& input, live::Runner& runner, live::Recorder& recorder,
-                                      const io::Sequence& source, const std::string& preset);
+                                      const input::Sequence& source, const std::string& preset);
 
 }  // namespace cairn::cli

@@ -47,11 +47,11 @@ Work declare_record(CLI::App& app) {
   return not_built_in(app);
 }
 
-io::FrameRange range_of(const std::string& /*text*/) {
+input::FrameRange range_of(const std::string& /*text*/) {
   refuse();
 }
-std::vector<std::size_t> sequence_frames(const BatchSequence& /*sequence*/, const io::FrameRange& /*range*/,
-                                         const Pool& /*pool*/) {
+std::vector<std::size_t> sequence_frames(const BatchSequence& /*sequence*/,
+                                         const input::FrameRange& /*range*/, const Pool& /*pool*/) {
   refuse();
 }
 std::string config_of_tracked_run(const ConfigOptions& /*options*/) {

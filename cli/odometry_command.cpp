@@ -31,19 +31,20 @@ struct OdometryOptions {
   std::string output;
 };
 
-FollowConfig resolve_odometry(const OdometryOptions& options, const io::Sequence& source) {
+FollowConfig resolve_odometry(const OdometryOptions& options, const input::Sequence& source) {
   FollowConfig config = resolve_follow(options.config, source.disparities(), source.ground());
   if (config.odometry.method == OdometryMethod::off)
     throw Error("option odometry.method: found off, expected keyframe or frame");
   return config;
 }
 
-std::unique_ptr<io::MotionPriors> load_priors(const OdometryOptions& options, const io::Sequence& source) {
+std::unique_ptr<input::MotionPriors> load_priors(const OdometryOptions& options,
+                                                 const input::Sequence& source) {
   refuse_two_priors(options.wheels, options.imu);
   const auto named = [](const std::string& file) {
     return file.empty() ? std::nullopt : std::optional<std::filesystem::path>(file);
   };
-  return io::open_priors(named(options.wheels), named(options.imu), options.input.source, source);
+  return live::open_priors(named(options.wheels), named(options.imu), options.input.source, source);
 }
 
 /// Totals of the frames, for the last line.
@@ -74,10 +75,10 @@ bool add(Run& run, const TrackedFrame& step, bool keep_lost) {
 /// The camera's motion without objects.
 class CameraMotion {
  public:
-  CameraMotion(const StereoRig& rig, const io::MotionPriors* priors, Run& run)
+  CameraMotion(const StereoRig& rig, const input::MotionPriors* priors, Run& run)
       : rig_(rig), priors_(priors), run_(run) {}
 
-  TrackedFrame next(const io::SequenceFrame& frame, const FollowConfig& config, const Exec& exec) {
+  TrackedFrame next(const input::SequenceFrame& frame, const FollowConfig& config, const Exec& exec) {
     const StereoResult scene = estimate_disparity(
         StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), rig_, config.segmentation, exec);
     const auto start = live::Clock::now();
@@ -105,7 +106,7 @@ class CameraMotion {
 
  private:
   StereoRig rig_;
-  const io::MotionPriors* priors_;
+  const input::MotionPriors* priors_;
   Run& run_;
   OdometryState state_;
   Pose from_level_;
@@ -115,25 +116,25 @@ class CameraMotion {
 /// Prints the poses, or keeps them for the file.
 class Poses : public live::Sink {
  public:
-  Poses(io::TrajectoryForm form, bool prints, std::optional<std::size_t> frames, Run& run)
+  Poses(output::TrajectoryForm form, bool prints, std::optional<std::size_t> frames, Run& run)
       : form_(form), prints_(prints), run_(run), progress_(frames.value_or(2)) {}
   void offer(const live::LiveFramePtr& frame) override {
     progress_.at(run_.frames, frame->pair->name);
-    if (!add(run_, frame->step, form_ == io::TrajectoryForm::kitti) || !prints_) return;
+    if (!add(run_, frame->step, form_ == output::TrajectoryForm::kitti) || !prints_) return;
     progress_.clear();
-    std::cout << io::trajectory_text({run_.poses.back()}, form_) << std::flush;
+    std::cout << output::trajectory_text({run_.poses.back()}, form_) << std::flush;
     run_.poses.clear();
   }
   void finish() override { progress_.clear(); }
 
  private:
-  io::TrajectoryForm form_;
+  output::TrajectoryForm form_;
   bool prints_;
   Run& run_;
   Progress progress_;
 };
 
-std::string summary(const Run& run, const io::MotionPriors* priors) {
+std::string summary(const Run& run, const input::MotionPriors* priors) {
   std::string all = std::to_string(run.frames) + (run.frames == 1 ? " frame, " : " frames, ") +
                     text_of("%.2f m", run.path_m) + " of path, " + std::to_string(run.keyframes) +
                     (run.keyframes == 1 ? " keyframe" : " keyframes");
@@ -151,23 +152,23 @@ std::string summary(const Run& run, const io::MotionPriors* priors) {
   return all;
 }
 
-io::TrajectoryForm form_named(const std::string& name) {
-  for (const auto& choice : io::kTrajectoryForms)
+output::TrajectoryForm form_named(const std::string& name) {
+  for (const auto& choice : output::kTrajectoryForms)
     if (choice.name == name) return choice.value;
   throw Error("--form: found " + name + ", expected tum, kitti or euroc");
 }
 
 int estimate(const OdometryOptions& options) {
-  const io::TrajectoryForm form = form_named(options.form);
+  const output::TrajectoryForm form = form_named(options.form);
   const Exec exec = make_exec(options.exec);
-  const std::unique_ptr<io::Sequence> source = open_source(options.input, exec.pool);
+  const std::unique_ptr<input::Sequence> source = open_source(options.input, exec.pool);
   const EndsBySignal ends(*source);
   const FollowConfig config = resolve_odometry(options, *source);
   if (!source->rig()) {
-    throw Error(io::without_password(options.input.source) +
+    throw Error(input::without_password(options.input.source) +
                 ": has no calibration, expected --calib (poses are in metres)");
   }
-  const std::unique_ptr<io::MotionPriors> priors = load_priors(options, *source);
+  const std::unique_ptr<input::MotionPriors> priors = load_priors(options, *source);
   Run run;
   CameraMotion motion(*source->rig(), priors.get(), run);
   live::LiveOptions how = live::LiveOptions::unpaced();
@@ -180,7 +181,7 @@ int estimate(const OdometryOptions& options) {
   runner.add(poses);
   catch_interrupts();
   runner.run();
-  if (!options.output.empty()) io::write_file(options.output, io::trajectory_text(run.poses, form));
+  if (!options.output.empty()) io::write_file(options.output, output::trajectory_text(run.poses, form));
   std::cerr << remarks_text(*source) << summary(run, priors.get());
   return is_interrupted() ? kInterrupted : exit_code_of(*source);
 }

@@ -38,13 +38,14 @@ void check_empty(const fs::path& folder) {
 /// The output folder: complete frames and their stamps.
 class Recording {
  public:
-  Recording(fs::path folder, const io::Sequence& sequence) : folder_(std::move(folder)), sequence_(sequence) {
+  Recording(fs::path folder, const input::Sequence& sequence)
+      : folder_(std::move(folder)), sequence_(sequence) {
     io::make_folder(folder_);
     stamps_.open(folder_ / "stamps.txt", std::ios::binary);
     stamps_ << "# ns\n";
   }
 
-  void add(const io::SequenceFrame& frame) {
+  void add(const input::SequenceFrame& frame) {
     const fs::path folder = folder_ / io::number_text(count_);
     io::make_folder(folder);
     // The left image last: a folder without one is no frame, so an interrupted run leaves complete frames
@@ -67,19 +68,19 @@ class Recording {
 
  private:
   fs::path folder_;
-  const io::Sequence& sequence_;
+  const input::Sequence& sequence_;
   std::ofstream stamps_;
   std::size_t count_ = 0;
 };
 
 int record(const RecordOptions& options) {
   check_empty(options.output);
-  const std::unique_ptr<io::Sequence> sequence = open_source(options.input, Pool::make());
+  const std::unique_ptr<input::Sequence> sequence = open_source(options.input, Pool::make());
   const EndsBySignal ends(*sequence);
   const Progress progress(sequence->size().value_or(2));
   Recording recording(options.output, *sequence);
   try {
-    while (const std::optional<io::SequenceFrame> frame = sequence->next()) {
+    while (const std::optional<input::SequenceFrame> frame = sequence->next()) {
       progress.at(recording.count(), frame->name);
       recording.add(*frame);
     }

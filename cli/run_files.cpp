@@ -13,7 +13,7 @@ namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using io::Json;
+using output::Json;
 
 }  // namespace
 
@@ -83,7 +83,7 @@ double RunTotals::percentile(double share) const {
 // ---- files ----
 
 RunFiles::RunFiles(RunFilesOptions options, live::MessageForm form, const live::Runner& runner,
-                   const io::Sequence& source, std::string source_name, FollowConfig config)
+                   const input::Sequence& source, std::string source_name, FollowConfig config)
     : options_(std::move(options)),
       form_(std::move(form)),
       runner_(runner),
@@ -93,7 +93,7 @@ RunFiles::RunFiles(RunFilesOptions options, live::MessageForm form, const live::
   if (!options_.output.empty()) files_.emplace(options_.output);
   if (options_.html) {
     page_.emplace(fs::path(options_.output) / "follow.html",
-                  io::FollowPageHead{source.name(), source.image_size(), source.rig()});
+                  output::FollowPageHead{source.name(), source.image_size(), source.rig()});
   }
 }
 
@@ -104,17 +104,17 @@ void RunFiles::offer(const live::LiveFramePtr& frame) {
   const io::LoadedImage& left = frame->pair->left;
   files_->add(step, *text_of(*frame, form_));
   if (page_) {
-    page_->add(io::encode_step(*results_of(*frame, form_), step, left.gray, left.rgb,
-                               totals_.milliseconds.back(), frame->map_from_odom));
+    page_->add(output::encode_step(*results_of(*frame, form_), step, left.gray, left.rgb,
+                                   totals_.milliseconds.back(), frame->map_from_odom));
   }
   if (options_.frames_out) {
     const fs::path folder = fs::path(options_.output) / frame->pair->name;
     io::make_folder(folder);
-    const Image<Rgb> drawn = io::draw_tracks(left.gray, left.rgb, step);
+    const Image<Rgb> drawn = output::draw_tracks(left.gray, left.rgb, step);
     io::save_png(folder / "tracks.png", drawn);
   }
-  for (const Json& event : io::event_lines(step, frame->landmarks, frame->events)) {
-    const std::string line = io::json_text(event);
+  for (const Json& event : output::event_lines(step, frame->landmarks, frame->events)) {
+    const std::string line = output::json_text(event);
     files_->add_event(line + "\n");
     if (page_) page_->add_event(line);
   }
@@ -133,14 +133,14 @@ Json RunFiles::summary_json() const {
   for (const auto& [name, sum] : totals_.reliability) reliability[name] = sum.first / sum.second;
   reliability["unreliable_frames"] = totals_.unreliable;
   Json remarks = Json::array();
-  for (const io::SourceRemark& remark : source_.remarks())
+  for (const input::SourceRemark& remark : source_.remarks())
     remarks.push_back({{"what", remark.what}, {"frames", remark.count}, {"first", remark.first}});
   Json settings = Json::object();
   for (const OptionInfo& option : cairn::options(config_)) {
     if (option.active) settings[option.name] = option.value;
   }
   return {{"cairn", CAIRN_VERSION},
-          {"source", io::without_password(source_name_)},
+          {"source", input::without_password(source_name_)},
           {"stamps", source_.stamps_from()},
           {"state", state()},
           {"frames", totals_.milliseconds.size()},
@@ -158,7 +158,7 @@ Json RunFiles::summary_json() const {
 void RunFiles::finish() {
   if (page_) page_->finish(runner_.marked().state.map);
   if (files_)
-    io::write_file(fs::path(options_.output) / "summary.json", io::json_text(summary_json(), 1) + "\n");
+    io::write_file(fs::path(options_.output) / "summary.json", output::json_text(summary_json(), 1) + "\n");
 }
 
 }  // namespace cairn::cli

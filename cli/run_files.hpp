@@ -53,7 +53,7 @@ class RunFiles : public live::Sink {
  public:
   /// `config`: at the start. Throws Error if the folder cannot be written.
   RunFiles(RunFilesOptions options, live::MessageForm form, const live::Runner& runner,
-           const io::Sequence& source, std::string source_name, FollowConfig config);
+           const input::Sequence& source, std::string source_name, FollowConfig config);
   void offer(const live::LiveFramePtr& frame) override;
   /// The page and summary.json, however the run ended.
   void finish() override;
@@ -61,17 +61,17 @@ class RunFiles : public live::Sink {
 
  private:
   [[nodiscard]] std::string state() const;
-  [[nodiscard]] io::Json summary_json() const;
+  [[nodiscard]] output::Json summary_json() const;
 
   RunFilesOptions options_;
   live::MessageForm form_;
   const live::Runner& runner_;
-  const io::Sequence& source_;
+  const input::Sequence& source_;
   std::string source_name_;
   FollowConfig config_;
   RunTotals totals_;
-  std::optional<io::FollowFiles> files_;
-  std::optional<io::FollowPage> page_;
+  std::optional<output::FollowFiles> files_;
+  std::optional<output::FollowPage> page_;
 };
 
 }  // namespace cairn::cli

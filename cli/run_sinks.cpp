@@ -18,7 +18,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   add_ros2_options(app, options.ros2);
 }
 
-RunSinks::RunSinks(const RunOptions& options, live::Runner& runner, const io::Sequence& source,
+RunSinks::RunSinks(const RunOptions& options, live::Runner& runner, const input::Sequence& source,
                    const FollowConfig& config, bool tracks, bool waits, live::Sink& console)
     : options_(options), runner_(runner) {
   const std::string preset = preset_of(options.config);

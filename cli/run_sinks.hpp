@@ -37,7 +37,7 @@ class RunSinks {
  public:
   /// Adds them to the runner, `console` among them. `waits`: no sink skips a frame, and the files are written
   /// within the loop. Throws Error.
-  RunSinks(const RunOptions& options, live::Runner& runner, const io::Sequence& source,
+  RunSinks(const RunOptions& options, live::Runner& runner, const input::Sequence& source,
            const FollowConfig& config, bool tracks, bool waits, live::Sink& console);
   /// Whether the reader of stdout has gone.
   [[nodiscard]] bool is_closed() const { return lines_ && lines_->is_closed(); }

@@ -59,20 +59,20 @@ std::string interval_text(const std::optional<Interval>& i) {
 }
 
 /// "3 obstacles left out: 2 background, 1 low confidence; the nearest at …"; empty without any.
-std::string left_out_text(const std::vector<cairn::SkippedFiles>& left_out) {
+std::string left_out_text(const std::vector<cairn::RejectedObstacle>& left_out) {
   if (left_out.empty()) return {};
   std::string text = std::to_string(left_out.size()) +
                      (left_out.size() == 1 ? " obstacle is not an object:" : " obstacles are not objects:");
   const char* between = " ";
   for (const auto& reason : kLeftOutReasons) {
-    const auto count = std::count_if(left_out.begin(), left_out.end(), [&](const cairn::SkippedFiles& left) {
+    const auto count = std::count_if(left_out.begin(), left_out.end(), [&](const cairn::RejectedObstacle& left) {
       return left.reason == reason.value;
     });
     if (count == 0) continue;
     text += between + std::to_string(count) + " " + std::string(reason.name);
     between = ", ";
   }
-  const cairn::SkippedFiles& nearest = left_out.front();
+  const cairn::RejectedObstacle& nearest = left_out.front();
   text += "; the nearest, " + std::to_string(nearest.pixel_count) + " px, ";
   text += nearest.position_in_camera_m ? text_of("%.2f m away", double(nearest.position_in_camera_m->z))
                                        : text_of("at %.1f px of disparity", double(nearest.disparity_px));
@@ -127,7 +127,7 @@ struct Report {
   std::string remark;  // like note, but printed once for all frames that have it
   std::vector<Finding> findings;
   bool is_doubtful = false;
-  io::EncodedFrame frame;  // for the page; empty without --html
+  output::EncodedFrame frame;  // for the page; empty without --html
 };
 
 /// The number of doubtful frames per run to diagnose, each of which takes as long as segmenting one.
@@ -135,9 +135,9 @@ constexpr std::size_t kMaxMeasured = 5;
 
 constexpr const char* kPageName = "segment.html";
 
-io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, const Frame& frame,
-                        const io::Provenance& provenance) {
-  io::PageFrame shown;
+output::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, const Frame& frame,
+                            const output::Provenance& provenance) {
+  output::PageFrame shown;
   shown.name = name;
   shown.left = loaded.left.gray;
   shown.left_rgb = loaded.left.rgb;
@@ -151,7 +151,7 @@ io::EncodedFrame encode(const std::string& name, const LoadedFrame& loaded, cons
   shown.groups = frame.groups.labels;
   shown.objects = frame.objects.labels;
   shown.space = frame.space;
-  return io::encode_frame(shown, io::json_of(frame, provenance));
+  return output::encode_frame(shown, output::json_of(frame, provenance));
 }
 
 /// Optional outputs in metres, by flag.
@@ -198,7 +198,7 @@ Report work_on(LoadedFrame loaded, const FrameTask& task, const SegmentOptions& 
   const Frame frame = segment_frame(loaded, exec);
   report.totals = {1, frame.objects.list.size(), valid_share(frame.disparity), frame.ground.plane ? 1 : 0,
                    watch.total_ms()};
-  const io::Provenance provenance{
+  const output::Provenance provenance{
       loaded.preset, loaded.config, loaded.rig, watch.times(), loaded.given.has_value(), stamp_ns};
   const DiagnosisConfig limits;
   report.findings = diagnose(frame, loaded.left.gray, loaded.right, loaded.rig, loaded.config, limits);
@@ -209,12 +209,12 @@ Report work_on(LoadedFrame loaded, const FrameTask& task, const SegmentOptions& 
   }
   if (!folder.empty()) {
     remove_older_page(options.output);
-    io::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance,
-                     {.point_cloud = options.ply,
-                      .object_clouds = options.ply_objects,
-                      .depth = options.depth,
-                      .grid = options.grid});
-    if (io::disparity_file_name(frame, provenance) == "disparity.pfm") {
+    output::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance,
+                         {.point_cloud = options.ply,
+                          .object_clouds = options.ply_objects,
+                          .depth = options.depth,
+                          .grid = options.grid});
+    if (output::disparity_file_name(frame, provenance) == "disparity.pfm") {
       report.note = "cairn: " + (folder / "disparity.pfm").string() +
                     ": written instead of disparity.png, which cannot hold disparities below 0 or from 256 "
                     "on\n";
@@ -222,8 +222,8 @@ Report work_on(LoadedFrame loaded, const FrameTask& task, const SegmentOptions& 
   }
   if (options.html) report.frame = encode(files.name, loaded, frame, provenance);
   if (options.json) {
-    report.out = one_of_many ? io::frame_row(files.name, frame, provenance) + "\n"
-                             : io::objects_json(frame, provenance);
+    report.out = one_of_many ? output::frame_row(files.name, frame, provenance) + "\n"
+                             : output::objects_json(frame, provenance);
     return report;
   }
   report.out = on_one_line(files.name) + ": " + summary(report.totals) + "\n";
@@ -288,7 +288,7 @@ Outcome segment_all(const SegmentOptions& options) {
   for (const io::FrameFiles& frame : frames) keep_truth(result_folder(options, frame, many));
   const auto stamps = stamps_of(options.input, frames);
   const Progress progress(frames.size());
-  std::vector<io::EncodedFrame> encoded;
+  std::vector<output::EncodedFrame> encoded;
   std::set<std::string> remarks;
   PassingFindings findings;
   std::size_t doubtful = 0;
@@ -305,7 +305,8 @@ Outcome segment_all(const SegmentOptions& options) {
       if (frames.size() == 1) throw;
       progress.clear();
       left_out.add(frames[i].name, error.what());
-      if (!folder.empty()) io::remove_result(folder);  // of an earlier run: it would pass for one of this run
+      if (!folder.empty())
+        output::remove_result(folder);  // of an earlier run: it would pass for one of this run
       continue;
     }
     try {
@@ -328,8 +329,8 @@ Outcome segment_all(const SegmentOptions& options) {
     }
   }
   if (options.html && !encoded.empty()) {
-    const io::PageHead head{"segment", name_of(options.input.left), {}};
-    io::write_file(fs::path(options.output) / kPageName, io::html_page(head, encoded));
+    const output::PageHead head{"segment", name_of(options.input.left), {}};
+    io::write_file(fs::path(options.output) / kPageName, output::html_page(head, encoded));
   }
   findings.tell();
   return {totals, left_out.exit_code(frames.size())};

@@ -19,13 +19,13 @@ constexpr double kMovesMetres = 1e-3;      // per frame; small, as the truth is 
 
 /// A result frame and its truth.
 struct Pair {
-  const io::TrackFrame* ours = nullptr;
-  const io::TrueFrame* truth = nullptr;
+  const output::TrackFrame* ours = nullptr;
+  const input::TrueFrame* truth = nullptr;
   std::int64_t index = 0;  // index of the truth
 };
 
 struct Result {
-  io::TrackFile file;
+  output::TrackFile file;
   fs::path path;
   fs::path changes;  // its events.jsonl
   bool is_numbered = false;
@@ -42,18 +42,18 @@ Result load_result(const fs::path& path) {
       throw Error(path.string() + ": has no tracks.jsonl, expected what cairn follow -o wrote");
   }
   result.is_numbered = result.path.extension() == ".txt";
-  result.file = result.is_numbered ? io::load_mots(result.path) : io::load_tracks(result.path);
+  result.file = result.is_numbered ? output::load_mots(result.path) : output::load_tracks(result.path);
   result.changes = result.path.parent_path() / "events.jsonl";
   return result;
 }
 
-std::vector<Pair> pairs_of(const Result& result, const io::TrueSequence& truth, SequenceScores& scores) {
+std::vector<Pair> pairs_of(const Result& result, const input::TrueSequence& truth, SequenceScores& scores) {
   const bool by_number = result.is_numbered || truth.is_numbered;
   std::map<std::string, std::size_t> names;
   for (std::size_t k = 0; k < truth.frames.size(); ++k) names[truth.frames[k].name] = k;
   std::vector<Pair> pairs;
   std::set<std::size_t> used;
-  for (const io::TrackFrame& frame : result.file.frames) {
+  for (const output::TrackFrame& frame : result.file.frames) {
     std::optional<std::size_t> at;
     if (by_number) {
       if (static_cast<std::size_t>(frame.index) < truth.frames.size())
@@ -78,9 +78,9 @@ std::vector<Pair> pairs_of(const Result& result, const io::TrueSequence& truth, 
   return pairs;
 }
 
-std::vector<io::TrackRecord> counted(const io::TrackFrame& frame, const SequenceOptions& options) {
-  std::vector<io::TrackRecord> tracks;
-  for (const io::TrackRecord& track : frame.tracks) {
+std::vector<output::TrackRecord> counted(const output::TrackFrame& frame, const SequenceOptions& options) {
+  std::vector<output::TrackRecord> tracks;
+  for (const output::TrackRecord& track : frame.tracks) {
     const bool is_sure = options.tentative || track.state != TrackState::tentative;
     if (track.mask && is_sure && !track.is_dont_care) tracks.push_back(track);
   }
@@ -102,11 +102,11 @@ Image<ObjectId> object_labels(const Image<TrackId>& tracks) {
 
 /// The first track of each track's last landmark. Tracks that were seen together in a frame remain distinct.
 /// Empty without landmarks.
-std::map<std::int64_t, std::int64_t> first_tracks(const io::TrackFile& file) {
+std::map<std::int64_t, std::int64_t> first_tracks(const output::TrackFile& file) {
   std::map<std::int64_t, std::int64_t> landmarks;  // by track; later frames correct earlier ones
   std::map<std::int64_t, std::set<std::int64_t>> frames;
-  for (const io::TrackFrame& frame : file.frames) {
-    for (const io::TrackRecord& track : frame.tracks) {
+  for (const output::TrackFrame& frame : file.frames) {
+    for (const output::TrackRecord& track : frame.tracks) {
       if (track.landmark) landmarks[number(track.id)] = *track.landmark;
       if (track.mask) frames[number(track.id)].insert(frame.index);
     }
@@ -144,12 +144,12 @@ void score_masks(const std::vector<Pair>& pairs, const Result& result, const Seq
   config.min_area = options.min_area;
   std::vector<FrameObjects> objects;
   for (const Pair& pair : pairs) {
-    const std::vector<io::TrackRecord> tracks = counted(*pair.ours, options);
+    const std::vector<output::TrackRecord> tracks = counted(*pair.ours, options);
     const std::string where = result.path.string() + ": frame " + pair.ours->name;
-    Image<TruthId> truth = io::load_true_labels(*pair.truth);
+    Image<TruthId> truth = input::load_true_labels(*pair.truth);
     if (truth.empty() && !tracks.empty())
       truth = Image<TruthId>(tracks.front().mask->size, TruthId::none, {});
-    const Image<TrackId> ours = io::track_labels(tracks, truth.size(), where);
+    const Image<TrackId> ours = output::track_labels(tracks, truth.size(), where);
     scores.scored.push_back(scored_frame(ours, truth, {options.min_area, pair.truth->is_partial}));
     if (truth.empty()) continue;
     const Image<ObjectId> labels = object_labels(ours);
@@ -163,9 +163,9 @@ void score_masks(const std::vector<Pair>& pairs, const Result& result, const Seq
   scores.objects = summarise(objects);
 }
 
-const io::TrackRecord* record_of(const io::TrackFrame& frame, std::int64_t id) {
+const output::TrackRecord* record_of(const output::TrackFrame& frame, std::int64_t id) {
   const auto found = std::find_if(frame.tracks.begin(), frame.tracks.end(),
-                                  [&](const io::TrackRecord& track) { return number(track.id) == id; });
+                                  [&](const output::TrackRecord& track) { return number(track.id) == id; });
   return found == frame.tracks.end() ? nullptr : &*found;
 }
 
@@ -177,7 +177,7 @@ void each_match(const std::vector<Pair>& pairs, const std::vector<ScoredFrame>& 
     for (std::size_t i = 0; i < matches[k].size(); ++i) {
       if (matches[k][i] < 0) continue;
       const std::int64_t id = scored[k].ours[static_cast<std::size_t>(matches[k][i])];
-      if (const io::TrackRecord* track = record_of(*pairs[k].ours, id))
+      if (const output::TrackRecord* track = record_of(*pairs[k].ours, id))
         visit(pairs[k], scored[k].truth[i], *track);
     }
   }
@@ -195,7 +195,7 @@ std::optional<Pose> world_from_map(const std::vector<Pair>& pairs) {
 PlaceErrors place_errors(const std::vector<Pair>& pairs, const SequenceScores& scores) {
   PlaceErrors errors;
   const std::optional<Pose> world = world_from_map(pairs);
-  each_match(pairs, scores.scored, [&](const Pair& pair, std::int64_t id, const io::TrackRecord& track) {
+  each_match(pairs, scores.scored, [&](const Pair& pair, std::int64_t id, const output::TrackRecord& track) {
     const auto place = pair.truth->places.find(id);
     if (place == pair.truth->places.end() || !place->second.visible_in_camera_m) return;
     if (track.state != TrackState::confirmed || !track.position_m || !pair.ours->map_from_camera) return;
@@ -215,9 +215,9 @@ PlaceErrors place_errors(const std::vector<Pair>& pairs, const SequenceScores& s
 /// Which true objects move in which true frames.
 class TrueMotion {
  public:
-  explicit TrueMotion(const io::TrueSequence& truth) {
+  explicit TrueMotion(const input::TrueSequence& truth) {
     is_known_ = truth.has_events;
-    for (const io::TrueEvent& event : truth.events) {
+    for (const input::TrueEvent& event : truth.events) {
       for (std::int64_t k = event.first_frame; event.is_in_view && k <= event.last_frame; ++k) {
         if (k < static_cast<std::int64_t>(truth.frames.size())) moves_[event.id].insert(k);
       }
@@ -237,7 +237,7 @@ class TrueMotion {
   }
 
  private:
-  void from_places(const io::TrueSequence& truth) {
+  void from_places(const input::TrueSequence& truth) {
     for (std::size_t k = 1; k < truth.frames.size(); ++k) {
       for (const auto& [id, place] : truth.frames[k].places) {
         const auto before = truth.frames[k - 1].places.find(id);
@@ -254,7 +254,7 @@ class TrueMotion {
   bool is_known_ = false;
 };
 
-MovingErrors moving_errors(const std::vector<Pair>& pairs, const io::TrueSequence& truth,
+MovingErrors moving_errors(const std::vector<Pair>& pairs, const input::TrueSequence& truth,
                            const SequenceScores& scores) {
   MovingErrors errors;
   const TrueMotion motion(truth);
@@ -268,7 +268,7 @@ MovingErrors moving_errors(const std::vector<Pair>& pairs, const io::TrueSequenc
       errors.frames_to_detect.emplace(id, std::nullopt);
     }
   }
-  each_match(pairs, scores.scored, [&](const Pair& pair, std::int64_t id, const io::TrackRecord& track) {
+  each_match(pairs, scores.scored, [&](const Pair& pair, std::int64_t id, const output::TrackRecord& track) {
     if (motion.moves(id, pair.index)) {
       ++errors.moving;
       errors.labelled += track.is_moving ? 1 : 0;
@@ -331,7 +331,7 @@ std::map<std::int64_t, std::pair<std::int64_t, int>> owners_of(const Stays& obje
 LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceScores& scores) {
   Stays objects = stays_of(pairs, scores);
   LandmarkErrors errors;
-  each_match(pairs, scores.scored, [&](const Pair& pair, std::int64_t id, const io::TrackRecord& track) {
+  each_match(pairs, scores.scored, [&](const Pair& pair, std::int64_t id, const output::TrackRecord& track) {
     if (!track.landmark) return;
     errors.is_known = true;
     for (Stretch& stretch : objects.at(id)) {
@@ -361,7 +361,7 @@ LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceSco
 }
 
 ChangeErrors change_errors(const Result& result, const std::vector<Pair>& pairs,
-                           const io::TrueSequence& truth, const SequenceScores& scores) {
+                           const input::TrueSequence& truth, const SequenceScores& scores) {
   ChangeErrors errors;
   std::error_code ignored;
   errors.is_known = truth.has_events && fs::exists(result.changes, ignored);
@@ -369,7 +369,7 @@ ChangeErrors change_errors(const Result& result, const std::vector<Pair>& pairs,
   // A change names a track or a landmark; it belongs to the object matched with it most often.
   std::map<std::int64_t, std::map<std::int64_t, int>> by_track;
   std::map<std::int64_t, std::map<std::int64_t, int>> by_landmark;
-  each_match(pairs, scores.scored, [&](const Pair&, std::int64_t id, const io::TrackRecord& track) {
+  each_match(pairs, scores.scored, [&](const Pair&, std::int64_t id, const output::TrackRecord& track) {
     ++by_track[number(track.id)][id];
     if (track.landmark) ++by_landmark[*track.landmark][id];
   });
@@ -382,21 +382,21 @@ ChangeErrors change_errors(const Result& result, const std::vector<Pair>& pairs,
   };
   std::set<std::int64_t> found;
   const std::optional<Pose> world = world_from_map(pairs);
-  const auto event_of = [&](std::int64_t id, bool is_in_view) -> const io::TrueEvent* {
-    for (const io::TrueEvent& event : truth.events) {
+  const auto event_of = [&](std::int64_t id, bool is_in_view) -> const input::TrueEvent* {
+    for (const input::TrueEvent& event : truth.events) {
       if (event.id == id && event.is_in_view == is_in_view) return &event;
     }
     return nullptr;
   };
-  for (const io::TrueEvent& event : truth.events) errors.expected += event.is_in_view ? 0 : 1;
-  for (const io::ChangeRecord& change : io::load_changes(result.changes)) {
+  for (const input::TrueEvent& event : truth.events) errors.expected += event.is_in_view ? 0 : 1;
+  for (const output::ChangeRecord& change : output::load_changes(result.changes)) {
     if (change.kind != "moved" && change.kind != "gone" && change.kind != "new") continue;
     std::optional<std::int64_t> id;
     if (change.track && number(*change.track) > 0) id = object_of(by_track, number(*change.track));
     if (!id && change.landmark) id = object_of(by_landmark, *change.landmark);
     if (id && event_of(*id, true) != nullptr) continue;
     ++errors.reported;
-    const io::TrueEvent* event = id ? event_of(*id, false) : nullptr;
+    const input::TrueEvent* event = id ? event_of(*id, false) : nullptr;
     if (event == nullptr) {
       ++errors.wrong;
       continue;
@@ -425,7 +425,7 @@ std::optional<TrajectoryError> trajectory(const std::vector<Pair>& pairs) {
 
 }  // namespace
 
-SequenceScores score_sequence(const fs::path& path, const io::TrueSequence& truth,
+SequenceScores score_sequence(const fs::path& path, const input::TrueSequence& truth,
                               const SequenceOptions& options) {
   const Result result = load_result(path);
   SequenceScores scores;

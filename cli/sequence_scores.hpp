@@ -79,7 +79,7 @@ struct SequenceScores {
 };
 
 /// `path`: a folder from `cairn follow`, its tracks.jsonl, or a MOTS text. Throws Error.
-SequenceScores score_sequence(const std::filesystem::path& path, const io::TrueSequence& truth,
+SequenceScores score_sequence(const std::filesystem::path& path, const input::TrueSequence& truth,
                               const SequenceOptions& options);
 
 }  // namespace cairn::cli

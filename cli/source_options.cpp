@@ -15,15 +15,15 @@
 namespace cairn::cli {
 namespace {
 
-std::atomic<io::Sequence*> open_camera = nullptr;
+std::atomic<input::Sequence*> open_camera = nullptr;
 
 void stop_camera() {
-  if (io::Sequence* camera = open_camera) camera->stop();
+  if (input::Sequence* camera = open_camera) camera->stop();
 }
 
 }  // namespace
 
-EndsBySignal::EndsBySignal(io::Sequence& sequence) {
+EndsBySignal::EndsBySignal(input::Sequence& sequence) {
   if (!sequence.status().is_live) return;
   open_camera = &sequence;
   on_interrupt_also(stop_camera);
@@ -74,12 +74,12 @@ void add_source_options(CLI::App& app, SourceInput& input) {
       ->capture_default_str();
 }
 
-std::unique_ptr<io::Sequence> open_source(const SourceInput& input, const Pool& pool) {
+std::unique_ptr<input::Sequence> open_source(const SourceInput& input, const Pool& pool) {
   // Silences FFmpeg, which prints to stderr; "-8" is its quiet level.
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
-  io::SourceOptions options = input.options;
-  if (!input.frames.empty()) options.frames = io::parse_frame_range(input.frames);
-  return io::open_sequence(input.source, options, pool);
+  input::SourceOptions options = input.options;
+  if (!input.frames.empty()) options.frames = input::parse_frame_range(input.frames);
+  return input::open_sequence(input.source, options, pool);
 }
 
 void refuse_two_priors(const std::string& odometry, const std::string& imu) {
@@ -87,9 +87,9 @@ void refuse_two_priors(const std::string& odometry, const std::string& imu) {
     throw Error("--imu: found --odometry as well, expected one of the two");
 }
 
-std::string remarks_text(const io::Sequence& sequence) {
+std::string remarks_text(const input::Sequence& sequence) {
   std::string text;
-  for (const io::SourceRemark& remark : sequence.remarks()) {
+  for (const input::SourceRemark& remark : sequence.remarks()) {
     text += "cairn: " + sequence.name() + ": " + remark.what;
     if (remark.count > 0) {
       text += ": " + std::to_string(remark.count) + (remark.count == 1 ? " frame" : " frames") +
@@ -101,11 +101,11 @@ std::string remarks_text(const io::Sequence& sequence) {
   return text;
 }
 
-int exit_code_of(const io::Sequence& sequence) {
+int exit_code_of(const input::Sequence& sequence) {
   if (!sequence.ended_early().empty()) return 3;
   const auto& remarks = sequence.remarks();
   return std::any_of(remarks.begin(), remarks.end(),
-                     [](const io::SourceRemark& remark) { return remark.is_unusable; })
+                     [](const input::SourceRemark& remark) { return remark.is_unusable; })
              ? 2
              : 0;
 }

@@ -12,17 +12,17 @@ namespace cairn::cli {
 struct SourceInput {
   std::string source;
   std::string frames;  // "10:60:2"
-  io::SourceOptions options;
+  input::SourceOptions options;
 };
 void add_source_options(CLI::App& app, SourceInput& input);
 /// Throws Error.
-std::unique_ptr<io::Sequence> open_source(const SourceInput& input, const Pool& pool);
+std::unique_ptr<input::Sequence> open_source(const SourceInput& input, const Pool& pool);
 
 /// Makes Ctrl-C end a camera source like the end of a file, during its lifetime, since cameras do not end by
 /// themselves. No effect on files. One at a time.
 class EndsBySignal {
  public:
-  explicit EndsBySignal(io::Sequence& sequence);
+  explicit EndsBySignal(input::Sequence& sequence);
   ~EndsBySignal();
   EndsBySignal(const EndsBySignal&) = delete;
   EndsBySignal& operator=(const EndsBySignal&) = delete;
@@ -32,8 +32,8 @@ class EndsBySignal {
 void refuse_two_priors(const std::string& odometry, const std::string& imu);
 
 /// The remarks on skipped frames, for stderr: one line each, and one for an early end.
-std::string remarks_text(const io::Sequence& sequence);
+std::string remarks_text(const input::Sequence& sequence);
 /// 3 after an early end, 2 if frames could not be read, else 0.
-int exit_code_of(const io::Sequence& sequence);
+int exit_code_of(const input::Sequence& sequence);
 
 }  // namespace cairn::cli

@@ -26,7 +26,7 @@ namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using io::Json;
+using output::Json;
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
@@ -108,9 +108,9 @@ void require_writable(const std::string& file) {
 
 // ---- the search ----
 
-using io::goal_word;
-using io::Measures;
-using Figure = io::TuningFigure;
+using output::goal_word;
+using output::Measures;
+using Figure = output::TuningFigure;
 
 /// The text next to the progress bar.
 std::string words(const TuneProgress& now, const std::string& budget) {
@@ -150,10 +150,10 @@ std::string text_of(const Figure& figure) {
 }
 
 std::string figure_table(const Tuning& tuned) {
-  const auto before = io::tuning_figures(tuned.before, tuned.goal);
-  const auto after = io::tuning_figures(tuned.after, tuned.goal);
-  const auto held_out_before = io::tuning_figures(tuned.held_out_before, tuned.goal);
-  const auto held_out_after = io::tuning_figures(tuned.held_out_after, tuned.goal);
+  const auto before = output::tuning_figures(tuned.before, tuned.goal);
+  const auto after = output::tuning_figures(tuned.after, tuned.goal);
+  const auto held_out_before = output::tuning_figures(tuned.held_out_before, tuned.goal);
+  const auto held_out_after = output::tuning_figures(tuned.held_out_after, tuned.goal);
   Table table({"", "before", "after", "held out: before", "after"});
   for (std::size_t i = 0; i < before.size(); ++i) {
     const bool known = i < held_out_before.size();
@@ -257,9 +257,9 @@ std::string config_file(const Task& task, const Tuning& tuned) {
 std::string tuning_json(const Task& task, const Tuning& tuned, const TuneOptions& options) {
   std::vector<std::string> names;
   for (const TuningFrame& frame : task.frames) names.push_back(frame.name);
-  Json j = io::json_of(tuned, names, options.seed);
+  Json j = output::json_of(tuned, names, options.seed);
   j["config"] = options.output;
-  return io::json_text(j, 1) + "\n";
+  return output::json_text(j, 1) + "\n";
 }
 
 int tune_over_time(const TuneOptions& options, Seconds budget) {

@@ -37,10 +37,10 @@ std::string text(double steadiness) {
   return text_of("%.3f", steadiness);
 }
 
-std::vector<io::SequenceFrame> held_frames(io::Sequence& source, const std::string& name) {
-  std::vector<io::SequenceFrame> frames;
+std::vector<input::SequenceFrame> held_frames(input::Sequence& source, const std::string& name) {
+  std::vector<input::SequenceFrame> frames;
   while (frames.size() < kMaxFrames) {
-    std::optional<io::SequenceFrame> frame = source.next();
+    std::optional<input::SequenceFrame> frame = source.next();
     if (!frame) break;
     frames.push_back(std::move(*frame));
   }
@@ -102,7 +102,7 @@ SearchConfig search_config(const TuneSequenceOptions& options, const std::vector
 /// Runs of the sequence with different settings.
 class SequenceTrials {
  public:
-  SequenceTrials(const std::vector<io::SequenceFrame>& frames, const FollowConfig& start,
+  SequenceTrials(const std::vector<input::SequenceFrame>& frames, const FollowConfig& start,
                  const std::optional<StereoRig>& rig, const Exec& exec, double seconds,
                  const std::function<bool()>& stop)
       : frames_(frames), start_(start), rig_(rig), exec_(exec), limit_s_(seconds), stop_(stop) {}
@@ -113,7 +113,7 @@ class SequenceTrials {
     config.segmentation = with_settings(start_.segmentation, settings);
     Follower follower(config, rig_, exec_);
     SteadinessRun steady;
-    for (const io::SequenceFrame& frame : frames_) {
+    for (const input::SequenceFrame& frame : frames_) {
       if (stop_() || (tried_ > 0 && seconds() > limit_s_)) {
         is_up_ = true;
         return std::nullopt;
@@ -139,7 +139,7 @@ class SequenceTrials {
   }
 
  private:
-  const std::vector<io::SequenceFrame>& frames_;
+  const std::vector<input::SequenceFrame>& frames_;
   const FollowConfig& start_;
   const std::optional<StereoRig>& rig_;
   const Exec& exec_;
@@ -175,7 +175,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   start.segmentation.ground.known = source->ground();
   validate(start);
 
-  const std::vector<io::SequenceFrame> frames = held_frames(*source, options.source);
+  const std::vector<input::SequenceFrame> frames = held_frames(*source, options.source);
   const double share = options.holdout.value_or(0.25);
   const std::size_t count = frames.size() - 1;  // the first frame has no predecessor
   const auto tuned_on = count - static_cast<std::size_t>(share * static_cast<double>(count));

@@ -11,7 +11,7 @@ int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: 05_follow_a_sequence FOLDER\n"), 2;
 
   // [readme]
-  const auto sequence = cairn::io::open_sequence(argv[1], {});
+  const auto sequence = cairn::input::open_sequence(argv[1], {});
   cairn::FollowConfig config;
   config.segmentation.match.num_disparities = sequence->disparities().value_or(64);
   cairn::Follower follower(config, sequence->rig(), cairn::Exec::with_threads(0));

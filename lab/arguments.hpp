@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string>
 
-namespace cairn::report {
+namespace cairn::lab {
 
 /// Throws Error unless `word` is an integer above 0.
 inline int positive_number(const std::string& word) {
@@ -18,4 +18,4 @@ inline int positive_number(const std::string& word) {
   return value;
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::lab

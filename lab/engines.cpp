@@ -24,7 +24,7 @@
 #include "arguments.hpp"
 #include "markdown_table.hpp"
 
-namespace cairn::engines {
+namespace cairn::lab {
 
 Registry& registry() {
   static Registry all;
@@ -37,9 +37,9 @@ std::string Scene::extent() const {
 
 double milliseconds(const Run& run, Clock clock) {
   const clockid_t id = clock == Clock::cpu ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC;
-  const double start = report::now_ms(id);
+  const double start = timing::now_ms(id);
   run();
-  return report::now_ms(id) - start;
+  return timing::now_ms(id) - start;
 }
 
 const Engine& engine_named(std::string_view name) {
@@ -51,8 +51,8 @@ const Engine& engine_named(std::string_view name) {
 
 namespace {
 
-using report::MarkdownTable;
-using report::text_of;
+using MarkdownTable;
+using text_of;
 
 struct Settings {
   std::filesystem::path data = "../shared/data";
@@ -155,7 +155,7 @@ Settings parse(const std::vector<std::string>& words) {
     if (i + 1 == words.size()) throw Error("'" + words[i] + "' needs a value");
     const std::string& option = words[i++];
     if (option == "--repeats") {
-      settings.repeats = report::positive_number(words[i]);
+      settings.repeats = positive_number(words[i]);
     } else if (option == "--only") {
       settings.only = words[i];
     } else if (option == "--sections") {
@@ -179,7 +179,7 @@ void run(const Settings& settings) {
 }
 
 }  // namespace
-}  // namespace cairn::engines
+}  // namespace cairn::lab
 
 int main(int argc, char** argv) try {
   cairn::engines::run(cairn::engines::parse({argv + 1, argv + argc}));

@@ -14,7 +14,7 @@
 
 /// The engines raced in engines.cpp. A file of engines registers them and their rows of the table with one
 /// static `const Registration`; the program itself knows none of them.
-namespace cairn::engines {
+namespace cairn::lab {
 
 /// An image pair of one of the sizes for which there are goals.
 struct Scene {
@@ -90,4 +90,4 @@ Image<float> block_matched(const StereoPair& pair, int num_disparities, int wind
 Image<Gray> resized(const Image<Gray>& image, Size size);
 Image<Rgb> resized(const Image<Rgb>& image, Size size);
 
-}  // namespace cairn::engines
+}  // namespace cairn::lab

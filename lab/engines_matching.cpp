@@ -66,12 +66,12 @@ void operator delete(void* data, std::size_t, std::align_val_t alignment) noexce
   discount(data, static_cast<std::size_t>(alignment));
 }
 
-namespace cairn::engines {
+namespace cairn::lab {
 namespace {
 
-using report::MarkdownTable;
-using report::percent;
-using report::text_of;
+using MarkdownTable;
+using percent;
+using text_of;
 
 /// The matching stages of a configuration, as run by segment(): with left-right check and uniqueness if they
 /// are on.
@@ -281,7 +281,7 @@ std::string accuracy_section(const std::filesystem::path& data, const std::vecto
   match.prefilter_cap = 9;
   std::vector<double> ours_bad, ours_density, theirs_bad, theirs_density;
   for (const char* folder : kMiddlebury) {
-    for (const report::TrueFrame& frame : report::load_true_frames(data / "real" / folder)) {
+    for (const TrueFrame& frame : load_true_frames(data / "real" / folder)) {
       const auto pair = StereoPair::from(frame.images.left.gray, frame.images.right.gray);
       match.num_disparities = (frame.num_disparities + 15) / 16 * 16;  // required by StereoBM
       const auto errors = [&](View<const float> disparity_px) {
@@ -299,9 +299,9 @@ std::string accuracy_section(const std::filesystem::path& data, const std::vecto
   MarkdownTable table(
       {"mean of " + std::to_string(ours_bad.size()) + " pairs", "bad-2 of matched, %", "density, %"});
   table.add({"SAD complete, true left-right, 15x15, xsobel with cap 9",
-             text_of("%.2f", 100 * report::mean(ours_bad)), percent(report::mean(ours_density))});
+             text_of("%.2f", 100 * timing::mean(ours_bad)), percent(timing::mean(ours_density))});
   table.add({"StereoBM, 15x15, its defaults, uniqueness 15, texture 10, left-right 1",
-             text_of("%.2f", 100 * report::mean(theirs_bad)), percent(report::mean(theirs_density))});
+             text_of("%.2f", 100 * timing::mean(theirs_bad)), percent(timing::mean(theirs_density))});
   return table.text();
 }
 
@@ -320,7 +320,7 @@ Run copying(const Scene& scene) {
 std::string steadiness_section(const std::filesystem::path&, const std::vector<Scene>& scenes) {
   constexpr int kFrames = 500;
   const auto spread = [](const std::vector<double>& times) {
-    return report::percentile(times, 0.99) / median(times);
+    return timing::percentile(times, 0.99) / median(times);
   };
   MarkdownTable table({"on", "median ms", "p99 ms", "p99 / median", "goal", "met",
                        "p99 / median of StereoBM full, interleaved", "p99 / median of memcpy"});
@@ -334,7 +334,7 @@ std::string steadiness_section(const std::filesystem::path&, const std::vector<S
     }
     const double ratio = spread(times[0]);
     table.add({scene.name + " " + scene.extent(), text_of("%.2f", median(times[0])),
-               text_of("%.2f", report::percentile(times[0], 0.99)), text_of("%.2f", ratio), "≤ 1.20",
+               text_of("%.2f", timing::percentile(times[0], 0.99)), text_of("%.2f", ratio), "≤ 1.20",
                ratio <= 1.2 ? "yes" : "**no**", text_of("%.2f", spread(times[1])),
                text_of("%.2f", spread(times[2]))});
   }
@@ -351,4 +351,4 @@ const Registration kMatching([](Registry& all) {
 });
 
 }  // namespace
-}  // namespace cairn::engines
+}  // namespace cairn::lab

@@ -10,23 +10,24 @@
 #include <cairn/timing/opencv_matrix.hpp>
 #include "engines.hpp"
 
-namespace cairn::engines {
+namespace cairn::lab {
 namespace {
 
-using report::matrix;
+using timing::matrix;
 
 template <class T>
 Image<T> resized_by_opencv(const Image<T>& image, Size size) {
   Image<T> small(size);
-  cv::Mat out = matrix(View<const T>(small));
-  cv::resize(matrix(View<const T>(image)), out, out.size(), 0, 0, cv::INTER_LINEAR);
+  cv::Mat out = timing::matrix(View<const T>(small));
+  cv::resize(timing::matrix(View<const T>(image)), out, out.size(), 0, 0, cv::INTER_LINEAR);
   return small;
 }
 
 Run compute(const cv::Ptr<cv::StereoMatcher>& matcher, const Scene& scene, int threads) {
   return [=, out = std::make_shared<cv::Mat>(), &scene] {
     cv::setNumThreads(threads);
-    matcher->compute(matrix(View<const Gray>(scene.left)), matrix(View<const Gray>(scene.right)), *out);
+    matcher->compute(timing::matrix(View<const Gray>(scene.left)),
+                     timing::matrix(View<const Gray>(scene.right)), *out);
   };
 }
 
@@ -66,8 +67,8 @@ const Registration kOpenCv([](Registry& all) {
 Image<float> block_matched(const StereoPair& pair, int num_disparities, int window) {
   cv::Mat sixteenths;
   block_matcher(num_disparities, window, true)
-      ->compute(matrix(pair.left()), matrix(pair.right()), sixteenths);
-  return report::disparity_px_of(sixteenths, 0);
+      ->compute(timing::matrix(pair.left()), timing::matrix(pair.right()), sixteenths);
+  return timing::disparity_px_of(sixteenths, 0);
 }
 
 Image<Gray> resized(const Image<Gray>& image, Size size) {
@@ -77,4 +78,4 @@ Image<Rgb> resized(const Image<Rgb>& image, Size size) {
   return resized_by_opencv(image, size);
 }
 
-}  // namespace cairn::engines
+}  // namespace cairn::lab

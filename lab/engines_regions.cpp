@@ -21,11 +21,11 @@
 #include <opencv2/ximgproc/segmentation.hpp>
 #endif
 
-namespace cairn::engines {
+namespace cairn::lab {
 namespace {
 
-using report::MarkdownTable;
-using report::text_of;
+using MarkdownTable;
+using text_of;
 
 Exec pooled(int threads) {
   Exec exec = Exec::with_threads(threads);
@@ -164,7 +164,7 @@ void add_comparisons(Registry& all) {
 }
 
 double processor_ms() {
-  return report::now_ms(CLOCK_PROCESS_CPUTIME_ID);
+  return timing::now_ms(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 /// The least processor time of each stage over several frames, in order, and the total without matching.
@@ -225,4 +225,4 @@ const Registration kRegions([](Registry& all) {
 });
 
 }  // namespace
-}  // namespace cairn::engines
+}  // namespace cairn::lab

@@ -26,7 +26,7 @@
 
 #include "scored_frames.hpp"
 
-namespace cairn::report {
+namespace cairn::lab {
 namespace {
 
 constexpr double kMinArea = 0.0015;  // share of the image; candidate regions
@@ -302,12 +302,12 @@ void work(const Job& of, float min_score, Files& files) {
   JudgedPair on_judged;
   if (files.pairs.is_open())
     on_judged = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
-  const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
+  const double start = timing::now_ms(CLOCK_THREAD_CPUTIME_ID);
   cut.hints = hint_objects(hint_input(superpixels.edges, cut.cues(in.left), exec), network, exec);
   const MergeTree tree = grow_merge_tree(superpixels, cut.cues(in.left), same_thing, exec, on_judged);
   config.objects.min_confidence = min_score;
   const ChosenObjects chosen = choose_objects(tree, whole_object, limits_of(config.objects, left.size()));
-  const double milliseconds = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
+  const double milliseconds = timing::now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
   const Truth truth(frame, superpixels, tree);
   if (files.pairs.is_open()) record_pairs(files.pairs, job, pairs, truth);
   if (files.regions.is_open()) record_regions(files.regions, job, tree, truth, left.size());
@@ -366,12 +366,12 @@ int run(std::span<char*> arguments) {
 }
 
 }  // namespace
-}  // namespace cairn::report
+}  // namespace cairn::lab
 
 int main(int argc, char** argv) {
   try {
     if (argc < 2) throw cairn::Error("fitting: which jobs?");
-    return cairn::report::run({argv, static_cast<std::size_t>(argc)});
+    return cairn::lab::run({argv, static_cast<std::size_t>(argc)});
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 2;

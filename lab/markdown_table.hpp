@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace cairn::report {
+namespace cairn::lab {
 
 /// A number in printf's format; a dash for NaN.
 inline std::string text_of(const char* format, double value) {
@@ -61,4 +61,4 @@ class MarkdownTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-}  // namespace cairn::report
+}  // namespace cairn::lab

@@ -9,7 +9,7 @@
 #include <vector>
 
 /// Coordinate search for programs that choose parameters on the fit set.
-namespace cairn::report {
+namespace cairn::lab {
 
 struct Knob {
   std::string option;
@@ -59,4 +59,4 @@ inline Values search_knobs(const std::vector<Knob>& knobs, const Values& start, 
   return best;
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::lab

@@ -43,8 +43,8 @@
 namespace {
 
 using namespace cairn;
-using report::percent;
-using report::text_of;
+using lab::percent;
+using lab::text_of;
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 struct Settings {
@@ -59,7 +59,7 @@ struct Settings {
 
 struct ChainKnob {
   double Settings::*value;
-  report::Knob knob;
+  lab::Knob knob;
   const char* usual;   // as in tutorials
   const char* chosen;  // found by --search
 };
@@ -84,7 +84,7 @@ const std::vector<ChainKnob>& chain_knobs() {
   return all;
 }
 
-Settings settings_of(const report::Values& values) {
+Settings settings_of(const lab::Values& values) {
   Settings settings{};
   for (std::size_t i = 0; i < values.size(); ++i) {
     const ChainKnob& knob = chain_knobs()[i];
@@ -96,7 +96,7 @@ Settings settings_of(const report::Values& values) {
   return settings;
 }
 
-Image<float> matched(const report::TrueFrame& frame, const Settings& s) {
+Image<float> matched(const lab::TrueFrame& frame, const Settings& s) {
   const int pixels = static_cast<int>(s.block_size * s.block_size);
   const int range = (frame.num_disparities + 15) / 16 * 16;
   const auto matcher =
@@ -104,9 +104,9 @@ Image<float> matched(const report::TrueFrame& frame, const Settings& s) {
                              static_cast<int>(s.p2) * pixels, 1, 63, static_cast<int>(s.uniqueness),
                              static_cast<int>(s.speckle_size), static_cast<int>(s.speckle_range));
   cv::Mat sixteenths;
-  matcher->compute(report::matrix(frame.images.left.gray), report::matrix(frame.images.right.gray),
+  matcher->compute(timing::matrix(frame.images.left.gray), timing::matrix(frame.images.right.gray),
                    sixteenths);
-  return report::disparity_px_of(sixteenths, 0);
+  return timing::disparity_px_of(sixteenths, 0);
 }
 
 /// One point per voxel, the mean of those inside.
@@ -211,28 +211,28 @@ struct MatchResult {
   Image<float> disparity_px;
 };
 
-report::Score score(const report::TrueFrame& frame, const Settings& s, MatchResult& matched_once) {
+lab::Score score(const lab::TrueFrame& frame, const Settings& s, MatchResult& matched_once) {
   const std::array<double, 6> by{s.block_size, s.p1, s.p2, s.uniqueness, s.speckle_size, s.speckle_range};
   if (!frame.rig)
     throw Error(frame.name + ": found no focal length and baseline, expected both in calib.txt");
-  report::Score result;
-  const double start = report::now_ms(CLOCK_THREAD_CPUTIME_ID);
+  lab::Score result;
+  const double start = timing::now_ms(CLOCK_THREAD_CPUTIME_ID);
   if (matched_once.by != by) matched_once = {by, matched(frame, s)};
   const Points points = points_of(matched_once.disparity_px, *frame.rig, s);
   const Image<ObjectId> labels = clusters(points, frame.objects.size(), s);
-  result.milliseconds = report::now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
+  result.milliseconds = timing::now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
   result.objects = {object_errors(labels, frame.objects, {}), frame.partial};
   return result;
 }
 
-report::SearchProgram search_chain(std::map<const report::TrueFrame*, MatchResult>& matched_once,
-                                   std::mutex& guard) {
-  report::SearchProgram program{"pcl_chain", {}, {}, {}};
+lab::SearchProgram search_chain(std::map<const lab::TrueFrame*, MatchResult>& matched_once,
+                                std::mutex& guard) {
+  lab::SearchProgram program{"pcl_chain", {}, {}, {}};
   for (const ChainKnob& knob : chain_knobs()) {
     program.knobs.push_back(knob.knob);
     program.start.emplace_back(knob.usual);
   }
-  program.score = [&](const report::TrueFrame& frame, const report::Values& values, const Exec&) {
+  program.score = [&](const lab::TrueFrame& frame, const lab::Values& values, const Exec&) {
     MatchResult* known = nullptr;
     {
       const std::lock_guard lock(guard);
@@ -243,21 +243,19 @@ report::SearchProgram search_chain(std::map<const report::TrueFrame*, MatchResul
   return program;
 }
 
-using Way = std::function<report::Score(const report::TrueFrame&, const Exec&)>;
+using Way = std::function<lab::Score(const lab::TrueFrame&, const Exec&)>;
 
 Way chain(const char* ChainKnob::*which) {
-  report::Values values;
+  lab::Values values;
   for (const ChainKnob& knob : chain_knobs()) values.emplace_back(knob.*which);
-  return [settings = settings_of(values)](const report::TrueFrame& frame, const Exec&) {
+  return [settings = settings_of(values)](const lab::TrueFrame& frame, const Exec&) {
     MatchResult none;
     return score(frame, settings, none);
   };
 }
 
 Way ours(const Config& config, bool grey) {
-  return [=](const report::TrueFrame& frame, const Exec& exec) {
-    return report::score(frame, config, grey, exec);
-  };
+  return [=](const lab::TrueFrame& frame, const Exec& exec) { return lab::score(frame, config, grey, exec); };
 }
 
 std::string counted(int part, int of) {
@@ -265,15 +263,15 @@ std::string counted(int part, int of) {
          percent(of > 0 ? static_cast<double>(part) / of : NAN);
 }
 
-void add_row(report::MarkdownTable& table, const std::string& name, const std::vector<report::FrameSet>& sets,
+void add_row(lab::MarkdownTable& table, const std::string& name, const std::vector<lab::FrameSet>& sets,
              const Way& way, int threads) {
   std::vector<FrameObjects> objects;
   std::vector<double> times;
-  for (const report::FrameSet& set : sets) {
-    std::vector<report::Score> scores(set.frames.size());
+  for (const lab::FrameSet& set : sets) {
+    std::vector<lab::Score> scores(set.frames.size());
     for_each_index(scores.size(), threads,
                    [&](std::size_t i, const Exec& exec) { scores[i] = way(set.frames[i], exec); });
-    for (const report::Score& score : scores) {
+    for (const lab::Score& score : scores) {
       objects.push_back(score.objects);
       times.push_back(score.milliseconds);
     }
@@ -285,9 +283,9 @@ void add_row(report::MarkdownTable& table, const std::string& name, const std::v
 }
 
 void compare(const std::filesystem::path& data, int threads) {
-  const auto show = [&](const std::string& title, const std::vector<report::FrameSet>& sets) {
-    report::MarkdownTable table({"", "found 0.5, %", "found 0.75, %", "precision, %", "mean E, %",
-                                 "median E, %", "phantoms per frame", "ms"});
+  const auto show = [&](const std::string& title, const std::vector<lab::FrameSet>& sets) {
+    lab::MarkdownTable table({"", "found 0.5, %", "found 0.75, %", "precision, %", "mean E, %", "median E, %",
+                              "phantoms per frame", "ms"});
     add_row(table, "StereoSGBM and PCL, usual numbers", sets, chain(&ChainKnob::usual), threads);
     add_row(table, "StereoSGBM and PCL, searched", sets, chain(&ChainKnob::chosen), threads);
     add_row(table, "cairn, `paper`", sets, ours(Config::paper(), true), threads);
@@ -296,27 +294,27 @@ void compare(const std::filesystem::path& data, int threads) {
     std::printf("### %s\n\n%s\n", title.c_str(), table.text().c_str());
     std::fflush(stdout);
   };
-  show("fit", report::fit_sets(data));
-  for (report::FrameSet& set : report::validation_sets(data)) {
+  show("fit", lab::fit_sets(data));
+  for (lab::FrameSet& set : lab::validation_sets(data)) {
     const std::string title = set.name;
-    std::vector<report::FrameSet> alone;
+    std::vector<lab::FrameSet> alone;
     alone.push_back(std::move(set));
     show(title, alone);
   }
 }
 
 void run(std::vector<std::string> arguments) {
-  report::set_opencv_threads(1);
+  timing::set_opencv_threads(1);
   if (!arguments.empty() && arguments[0] == "--search") {
     arguments.erase(arguments.begin());
-    std::map<const report::TrueFrame*, MatchResult> matched_once;
+    std::map<const lab::TrueFrame*, MatchResult> matched_once;
     std::mutex guard;
-    report::run_search(search_chain(matched_once, guard), arguments);
+    lab::run_search(search_chain(matched_once, guard), arguments);
     return;
   }
   int threads = 1;
   if (arguments.size() == 3 && arguments[1] == "--threads") {
-    threads = report::positive_number(arguments[2]);
+    threads = lab::positive_number(arguments[2]);
     arguments.resize(1);
   }
   if (arguments.size() != 1) throw Error("expected DATA [--threads N], or --search DATA ...");

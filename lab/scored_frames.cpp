@@ -7,7 +7,7 @@
 
 #include <cairn/timing/clock.hpp>
 
-namespace cairn::report {
+namespace cairn::lab {
 namespace {
 
 template <class T>
@@ -54,10 +54,10 @@ Frame segment_frame(const TrueFrame& frame, Config config, bool grey, const Exec
 }
 
 Score score(const TrueFrame& frame, const Config& config, bool grey, const Exec& exec) {
-  const double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
+  const double start = timing::now_ms(CLOCK_THREAD_CPUTIME_ID);
   const Frame found = segment_frame(frame, config, grey, exec);
   Score result;
-  result.milliseconds = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
+  result.milliseconds = timing::now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
   if (!frame.objects.empty())
     result.objects = {object_errors(found.objects.labels, frame.objects, {}), frame.partial};
   if (!frame.truth_px.empty())
@@ -73,4 +73,4 @@ std::vector<Score> score_all(const std::vector<TrueFrame>& frames, const Config&
   return scores;
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::lab

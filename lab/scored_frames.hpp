@@ -16,7 +16,7 @@
 #include <cairn/timing/statistics.hpp>
 
 /// Frames with ground truth in memory, and the scores of a configuration on them.
-namespace cairn::report {
+namespace cairn::lab {
 
 struct TrueFrame {
   std::string name;
@@ -48,4 +48,4 @@ Score score(const TrueFrame& frame, const Config& config, bool grey, const Exec&
 std::vector<Score> score_all(const std::vector<TrueFrame>& frames, const Config& config, bool grey,
                              int threads);
 
-}  // namespace cairn::report
+}  // namespace cairn::lab

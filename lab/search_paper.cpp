@@ -11,7 +11,7 @@
 
 #include "search_program.hpp"
 
-namespace cairn::report {
+namespace cairn::lab {
 namespace {
 
 std::vector<Knob> knobs() {
@@ -51,10 +51,10 @@ SearchProgram search_paper() {
 }
 
 }  // namespace
-}  // namespace cairn::report
+}  // namespace cairn::lab
 
 int main(int count, char** arguments) try {
-  cairn::report::run_search(cairn::report::search_paper(), {arguments + 1, arguments + count});
+  cairn::lab::run_search(cairn::lab::search_paper(), {arguments + 1, arguments + count});
 } catch (const std::exception& error) {
   std::fprintf(stderr, "search_paper: %s\n", error.what());
   return 2;

@@ -8,7 +8,7 @@
 
 #include "arguments.hpp"
 
-namespace cairn::report {
+namespace cairn::lab {
 namespace {
 
 namespace fs = std::filesystem;
@@ -167,4 +167,4 @@ void run_search(const SearchProgram& program, const std::vector<std::string>& ar
   std::printf("\n");
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::lab

@@ -11,7 +11,7 @@
 #include "scored_frames.hpp"
 
 /// Shared by programs that choose parameters on the fit set: frames, score, command line.
-namespace cairn::report {
+namespace cairn::lab {
 
 struct FrameSet {
   std::string name;
@@ -37,4 +37,4 @@ struct SearchProgram {
 /// all before), their number, and the values kept. Throws Error.
 void run_search(const SearchProgram& program, const std::vector<std::string>& arguments);
 
-}  // namespace cairn::report
+}  // namespace cairn::lab

@@ -15,7 +15,7 @@
 #include <cairn/io/names_and_numbers.hpp>
 #include <cairn/sequence/stamps.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,7 +36,7 @@ std::vector<fs::path> images_in(const fs::path& folder) {
   }
   if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
   std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
-    return in_natural_order(a.filename().string(), b.filename().string());
+    return io::in_natural_order(a.filename().string(), b.filename().string());
   });
   return images;
 }
@@ -210,7 +210,7 @@ std::optional<Pattern> pattern_of(const std::string& text) {
   std::size_t at = percent + 1;
   const bool is_padded = at < name.size() && name[at] == '0';
   std::size_t digits = 0;
-  while (at < name.size() && is_digit(name[at]) && digits < 20)
+  while (at < name.size() && io::is_digit(name[at]) && digits < 20)
     digits = 10 * digits + static_cast<std::size_t>(name[at++] - '0');
   if (at >= name.size() || name[at] != 'd' || name.find('%', at) != std::string::npos) return std::nullopt;
   return Pattern{path.parent_path().empty() ? "." : path.parent_path(), name.substr(0, percent),
@@ -225,7 +225,7 @@ struct NumberedFiles {
 NumberedFiles files_of(const std::string& text) {
   const std::optional<Pattern> pattern = pattern_of(text);
   if (!pattern) throw Error(text + ": expected one %d, %04d or the like in the file name");
-  if (!is_folder(pattern->folder)) throw Error(pattern->folder.string() + ": no such folder");
+  if (!io::is_folder(pattern->folder)) throw Error(pattern->folder.string() + ": no such folder");
   NumberedFiles found;
   for (const fs::path& file : images_in(pattern->folder)) {
     const std::string name = file.filename().string();
@@ -260,14 +260,15 @@ FrameList list_patterns(const std::string& left_text, const std::string& right_t
 /// mav0/cam0, or cam0 if the folder is mav0 itself.
 std::optional<fs::path> euroc_camera_in(const fs::path& folder) {
   for (const char* camera : {"mav0/cam0", "cam0"}) {
-    if (is_folder(folder / camera / "data")) return folder / camera;
+    if (io::is_folder(folder / camera / "data")) return folder / camera;
   }
   return std::nullopt;
 }
 
 FrameList list_euroc(const fs::path& camera, const SourceOptions& options) {
   const fs::path other = camera.parent_path() / "cam1";
-  if (!is_folder(other)) throw Error(other.string() + ": no such folder, expected that of the right camera");
+  if (!io::is_folder(other))
+    throw Error(other.string() + ": no such folder, expected that of the right camera");
   FrameList list = paired_by_stamps(euroc_side(camera), euroc_side(other), options);
   list.calib = camera / "sensor.yaml";
   list.is_raw = true;
@@ -302,28 +303,29 @@ Side left_side(const fs::path& source, const fs::path& folder) {
   return left;
 }
 
-void sort_by_name(std::vector<FrameFiles>& frames) {
-  std::sort(frames.begin(), frames.end(),
-            [](const FrameFiles& a, const FrameFiles& b) { return in_natural_order(a.name, b.name); });
+void sort_by_name(std::vector<io::FrameFiles>& frames) {
+  std::sort(frames.begin(), frames.end(), [](const io::FrameFiles& a, const io::FrameFiles& b) {
+    return io::in_natural_order(a.name, b.name);
+  });
 }
 
-std::vector<std::string> names_of(const std::vector<FrameFiles>& frames) {
+std::vector<std::string> names_of(const std::vector<io::FrameFiles>& frames) {
   std::vector<std::string> names;
-  for (const FrameFiles& files : frames) names.push_back(files.name);
+  for (const io::FrameFiles& files : frames) names.push_back(files.name);
   return names;
 }
 
-bool is_in_two_folders(const FrameFiles& frame) {
+bool is_in_two_folders(const io::FrameFiles& frame) {
   return frame.left.parent_path() != frame.folder;
 }
 
 /// KITTI's raw recordings have stamps per camera; the odometry benchmark has one times.txt.
-FrameList list_two_subfolders(const fs::path& source, const std::vector<FrameFiles>& frames,
+FrameList list_two_subfolders(const fs::path& source, const std::vector<io::FrameFiles>& frames,
                               const SourceOptions& options) {
   const fs::path left_folder = frames.front().left.parent_path();
   const fs::path right_folder = frames.front().expected_right.parent_path();
   const Side left = left_side(source, left_folder);
-  const Side right = is_folder(right_folder) ? Side{images_in(right_folder), {}, {}} : Side{};
+  const Side right = io::is_folder(right_folder) ? Side{images_in(right_folder), {}, {}} : Side{};
   const StampPairs pairs = pair_by_keys(stems_of(left.files), stems_of(right.files));
   if (pairs.pairs.empty()) {
     throw Error(left_folder.string() + ": no image has a right one, expected " +
@@ -339,9 +341,9 @@ FrameList list_two_subfolders(const fs::path& source, const std::vector<FrameFil
   return paired(left, right, pairs, options);
 }
 
-FrameList list_frames(const fs::path& source, const std::vector<FrameFiles>& frames,
+FrameList list_frames(const fs::path& source, const std::vector<io::FrameFiles>& frames,
                       const SourceOptions& options) {
-  if (std::none_of(frames.begin(), frames.end(), [](const FrameFiles& files) { return files.right; })) {
+  if (std::none_of(frames.begin(), frames.end(), [](const io::FrameFiles& files) { return files.right; })) {
     throw Error(frames.front().left.string() + ": no right image" +
                 (frames.front().expected_right.empty()
                      ? ""
@@ -351,7 +353,7 @@ FrameList list_frames(const fs::path& source, const std::vector<FrameFiles>& fra
   const std::optional<Stamps> stamps = stamps_of(source, names_of(frames));
   const double rate = rate_of(options);
   list.stamps_from = stamps ? stamps->from : rate_text(rate);
-  list.calib = calibration_in(source);
+  list.calib = io::calibration_in(source);
   list.grey_cameras = frames.front().grey_cameras;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!frames[i].right) {
@@ -370,9 +372,9 @@ FrameList list_frames(const fs::path& source, const std::vector<FrameFiles>& fra
 FrameList list_folder(const fs::path& folder, const SourceOptions& options) {
   if (const std::optional<fs::path> camera = euroc_camera_in(folder))
     return finished(list_euroc(*camera, options), options, folder.string());
-  std::vector<FrameFiles> frames = find_frames(folder);
+  std::vector<io::FrameFiles> frames = io::find_frames(folder);
   sort_by_name(frames);
-  const FrameFiles& first = frames.front();
+  const io::FrameFiles& first = frames.front();
   const bool in_two_folders = is_in_two_folders(first);
   FrameList list =
       in_two_folders ? list_two_subfolders(folder, frames, options) : list_frames(folder, frames, options);
@@ -383,7 +385,7 @@ FrameList list_folder(const fs::path& folder, const SourceOptions& options) {
   return finished(std::move(list), options, folder.string());
 }
 
-std::map<fs::path, Stamp> stamps_in(const fs::path& folder, std::vector<FrameFiles> frames) {
+std::map<fs::path, Stamp> stamps_in(const fs::path& folder, std::vector<io::FrameFiles> frames) {
   sort_by_name(frames);
   std::map<fs::path, Stamp> by_image;
   if (is_in_two_folders(frames.front())) {
@@ -399,12 +401,12 @@ std::map<fs::path, Stamp> stamps_in(const fs::path& folder, std::vector<FrameFil
 }
 
 FrameList list_two(const std::string& left, const std::string& right, const SourceOptions& options) {
-  const bool are_folders = is_folder(left) && is_folder(right);
+  const bool are_folders = io::is_folder(left) && io::is_folder(right);
   FrameList list = are_folders ? list_two_folders(left, right, options) : list_patterns(left, right, options);
   const fs::path folder = list.frames.front().left.parent_path();
-  list.calib = calibration_in(folder);
+  list.calib = io::calibration_in(folder);
   if (!list.calib && are_folders)
-    list.calib = calibration_in(fs::absolute(folder).lexically_normal().parent_path());
+    list.calib = io::calibration_in(fs::absolute(folder).lexically_normal().parent_path());
   return finished(std::move(list), options, left + "," + right);
 }
 
@@ -436,4 +438,4 @@ Stamp stamp_at(std::size_t index, double rate_hz) {
   return Stamp{std::llround(static_cast<double>(index) * 1e9 / rate_hz)};
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -12,7 +12,7 @@
 #include <cairn/io/dataset.hpp>
 
 /// Lists the files of a source before any image is decoded; internal to source.
-namespace cairn::io {
+namespace cairn::input {
 
 struct ListedFrame {
   std::string name;
@@ -41,7 +41,7 @@ FrameList list_two(const std::string& left, const std::string& right, const Sour
 /// from the frames' names; empty if there are none. Throws Error if a file of stamps does not fit the frames,
 /// or as check_rising().
 std::map<std::filesystem::path, Stamp> stamps_in(const std::filesystem::path& folder,
-                                                 std::vector<FrameFiles> frames);
+                                                 std::vector<io::FrameFiles> frames);
 
 /// Whether the name is a pattern: left_%04d.png.
 bool is_pattern(const std::string& name);
@@ -54,4 +54,4 @@ double rate_of(const SourceOptions& options);
 std::string rate_text(double rate_hz);
 Stamp stamp_at(std::size_t index, double rate_hz);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -9,7 +9,7 @@
 #include <cairn/input/frame_list.hpp>
 #include <cairn/sequence/stamps.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ std::uint64_t hash_of(View<const Gray> image) {
 
 }  // namespace
 
-LoadedPair SourceCalibration::rectified(LoadedPair pair, const Pool& pool) const {
+io::LoadedPair SourceCalibration::rectified(io::LoadedPair pair, const Pool& pool) const {
   if (!rectifier) return pair;
   try {
     return (*rectifier)(pair, pool);
@@ -38,10 +38,10 @@ LoadedPair SourceCalibration::rectified(LoadedPair pair, const Pool& pool) const
 
 void SourceCalibration::suit(Size image) {
   if (rectifier) {
-    says.num_disparities = disparities_down_to(0, *says.rig, image.width);
+    says.num_disparities = io::disparities_down_to(0, *says.rig, image.width);
   } else if (!path.empty()) {
-    check_size(says, image, path);
-    check_search_range(says, path);
+    io::check_size(says, image, path);
+    io::check_search_range(says, path);
   }
 }
 
@@ -65,10 +65,10 @@ SourceCalibration open_calibration(const SourceOptions& options, const std::opti
   if (is_raw || options.rectify) {
     if (calibration.path.empty())
       throw Error("--rectify: found no calibration, expected that of the raw cameras as --calib FILE");
-    calibration.rectifier = std::make_shared<Rectifier>(load_raw_calibration(calibration.path));
+    calibration.rectifier = std::make_shared<io::Rectifier>(io::load_raw_calibration(calibration.path));
     calibration.says.rig = calibration.rectifier->rig();
   } else if (!calibration.path.empty()) {
-    calibration.says = load_calibration(calibration.path, grey_cameras);
+    calibration.says = io::load_calibration(calibration.path, grey_cameras);
   }
   return calibration;
 }
@@ -98,4 +98,4 @@ void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<
   before_ = std::move(now);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -16,17 +16,17 @@
 #include <cairn/input/sequence.hpp>
 
 /// Frame handling common to all sources; internal to source.
-namespace cairn::io {
+namespace cairn::input {
 
 /// The calibration of a source.
 struct SourceCalibration {
   std::filesystem::path path;  // empty if there is none
-  Calibration says;
-  std::shared_ptr<const Rectifier> rectifier;  // for raw images
+  io::Calibration says;
+  std::shared_ptr<const io::Rectifier> rectifier;  // for raw images
 
   /// The rectified pair for raw images, else the pair itself. Throws Error if the calibration was made for
   /// another size.
-  [[nodiscard]] LoadedPair rectified(LoadedPair pair, const Pool& pool) const;
+  [[nodiscard]] io::LoadedPair rectified(io::LoadedPair pair, const Pool& pool) const;
 
   /// Checks the calibration once the image size is known: sets the search range for raw images; else throws
   /// Error if the file was made for another size, or its range exceeds the image width.
@@ -74,7 +74,7 @@ class SourceSequence : public Sequence {
   [[nodiscard]] const std::optional<StereoRig>& rig() const override { return calibration_.says.rig; }
   [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
   [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
-  [[nodiscard]] const Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
+  [[nodiscard]] const io::Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
   [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return remarks_; }
   [[nodiscard]] const std::string& ended_early() const override { return ended_early_; }
 
@@ -90,4 +90,4 @@ class SourceSequence : public Sequence {
   std::string ended_early_;
 };
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -13,7 +13,7 @@
 #include <cairn/io/text_lines.hpp>
 #include <cairn/sequence/stamps.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,10 +26,10 @@ Point3 mounting_in(const fs::path& path, std::string_view text) {
                                      text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
   const std::string_view rest = text.substr(at + kKey.size());
   std::vector<double> found;
-  for (const std::string_view field : fields_of(rest.substr(0, rest.find_first_of("\r\n"))))
-    if (!field.empty()) found.push_back(number_in(field, path, number));
+  for (const std::string_view field : io::fields_of(rest.substr(0, rest.find_first_of("\r\n"))))
+    if (!field.empty()) found.push_back(io::number_in(field, path, number));
   if (found.size() != 3 || std::ranges::any_of(found, [](double x) { return !std::isfinite(x); })) {
-    throw Error(place(path, number) + ": has " + std::to_string(found.size()) +
+    throw Error(io::place(path, number) + ": has " + std::to_string(found.size()) +
                 " numbers, expected 3: the position of the laser, x y z in m");
   }
   return {found[0], found[1], found[2]};
@@ -39,30 +39,30 @@ Point3 mounting_in(const fs::path& path, std::string_view text) {
 
 std::vector<LaserScan> load_scans(const fs::path& path) {
   constexpr std::size_t kBeforeRanges = 3;
-  const std::string text = read_file(path, kMaxLogBytes);
-  const std::vector<TextLine> lines = lines_of(text);
+  const std::string text = io::read_file(path, kMaxLogBytes);
+  const std::vector<io::TextLine> lines = io::lines_of(text);
   const std::vector<std::string_view> header =
-      lines.empty() ? std::vector<std::string_view>{} : fields_of(lines.front().text);
+      lines.empty() ? std::vector<std::string_view>{} : io::fields_of(lines.front().text);
   const bool in_seconds = !header.empty() && header[0] == "t_s";
   if (header.size() <= kBeforeRanges || !(in_seconds || header[0] == "stamp") || header[1] != "angle_min" ||
       header[2] != "angle_increment") {
     throw Error(path.string() + ": expected a first line stamp,angle_min,angle_increment,r0,... found " +
-                (lines.empty() ? "none" : quoted(lines.front().text)));
+                (lines.empty() ? "none" : io::quoted(lines.front().text)));
   }
   const Point3 mounting = mounting_in(path, text);
   std::vector<LaserScan> scans;
   std::vector<Stamp> stamps;
   std::vector<std::string> names;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::string where = place(path, lines[i].number);
-    const std::vector<std::string_view> fields = fields_of(lines[i].text);
+    const std::string where = io::place(path, lines[i].number);
+    const std::vector<std::string_view> fields = io::fields_of(lines[i].text);
     if (fields.size() <= kBeforeRanges)
       throw Error(where + ": has " + std::to_string(fields.size()) + " fields, expected 3 and then ranges");
     const auto stamp = in_seconds ? parse_seconds(fields[0]) : parse_stamp(fields[0]);
-    if (!stamp) throw Error(where + ": found " + quoted(fields[0]) + ", expected a stamp");
+    if (!stamp) throw Error(where + ": found " + io::quoted(fields[0]) + ", expected a stamp");
     LaserScan scan{*stamp,
-                   number_in(fields[1], path, lines[i].number),
-                   number_in(fields[2], path, lines[i].number),
+                   io::number_in(fields[1], path, lines[i].number),
+                   io::number_in(fields[2], path, lines[i].number),
                    {},
                    mounting};
     const double last =
@@ -72,8 +72,9 @@ std::vector<LaserScan> load_scans(const fs::path& path) {
       throw Error(where + ": found angles beyond a full turn, expected rad: are they degrees?");
     for (std::size_t k = kBeforeRanges; k < fields.size(); ++k) {
       const bool is_nothing = fields[k] == "inf" || fields[k] == "Inf" || fields[k] == "INF";
-      scan.ranges_m.push_back(is_nothing ? std::numeric_limits<float>::quiet_NaN()
-                                         : static_cast<float>(number_in(fields[k], path, lines[i].number)));
+      scan.ranges_m.push_back(is_nothing
+                                  ? std::numeric_limits<float>::quiet_NaN()
+                                  : static_cast<float>(io::number_in(fields[k], path, lines[i].number)));
     }
     stamps.push_back(scan.stamp);
     names.push_back("of line " + std::to_string(lines[i].number));
@@ -96,4 +97,4 @@ const LaserScan* scan_at(const std::vector<LaserScan>& scans, Stamp moment) {
   return best != nullptr && std::abs(best->stamp.ns - moment.ns) <= kMaxNs ? best : nullptr;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -9,7 +9,7 @@
 
 #include <cairn/sequence/reliability.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 
 /// Reads laser scans from a table: a header line `stamp,angle_min,angle_increment,r0,…`, then one line per
 /// scan: its stamp (t_s instead of stamp: in s; see parse_stamp()), angles in rad from straight ahead
@@ -22,4 +22,4 @@ std::vector<LaserScan> load_scans(const std::filesystem::path& path);
 /// The scan nearest to a time; nullptr if it is more than 50 ms off.
 const LaserScan* scan_at(const std::vector<LaserScan>& scans, Stamp moment);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

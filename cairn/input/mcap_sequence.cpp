@@ -18,7 +18,7 @@
 #include <cairn/ros/mcap.hpp>
 #include <cairn/sequence/stamp_pairing.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,7 +36,7 @@ struct Side {
 /// An image waiting for that of the other camera.
 struct WaitingImage {
   std::size_t index = 0;
-  std::optional<Raster> image;  // nullopt if it cannot be decoded
+  std::optional<io::Raster> image;  // nullopt if it cannot be decoded
   std::string trouble;
   std::string frame_id;
 };
@@ -51,7 +51,7 @@ class McapSequence : public SourceSequence {
         reader_(file),
         pairing_(options.max_skew_ms, [this](std::size_t side, Pairing::WaitingItem&& alone) {
           remark(remarks_, {side == 0 ? "left image without a right one" : "right image without a left one",
-                            1, number_text(alone.value.index), true, false});
+                            1, io::number_text(alone.value.index), true, false});
         }) {
     if (reader_.channels().empty() && !reader_.is_whole())
       throw Error(file.string() + ": is truncated before the end of its first chunk: nothing can be read");
@@ -114,7 +114,7 @@ class McapSequence : public SourceSequence {
     }
     if (recorded && !topics.is_raw) {
       calibration_.path = file_ / "calib.txt";
-      calibration_.says = parse_calibration(*recorded, calibration_.path);
+      calibration_.says = io::parse_calibration(*recorded, calibration_.path);
       return;
     }
     const auto left = first_of<ros::CameraInfo>(topics.left_info);
@@ -150,14 +150,14 @@ class McapSequence : public SourceSequence {
         throw Error("camera_info: found the distortion model " + info.distortion_model +
                     ", expected plumb_bob or rational_polynomial");
       }
-      return RawCamera{info.k, info.d, info.r, info.p};
+      return io::RawCamera{info.k, info.d, info.r, info.p};
     };
-    RawCalibration raw;
-    check_sides(left.width, left.height);
+    io::RawCalibration raw;
+    io::check_sides(left.width, left.height);
     raw.image_size = {static_cast<int>(left.width), static_cast<int>(left.height)};
     raw.left = camera(left);
     raw.right = camera(right);
-    calibration_.rectifier = std::make_shared<Rectifier>(raw);
+    calibration_.rectifier = std::make_shared<io::Rectifier>(raw);
     calibration_.says.rig = calibration_.rectifier->rig();
   }
   [[noreturn]] void refuse_raw(const std::string& how) const {
@@ -202,8 +202,8 @@ class McapSequence : public SourceSequence {
         const auto image = ros::decode<ros::CompressedImage>(message.bytes);
         stamp = stamp_of(image.header, message);
         waiting.frame_id = ros::camera_of(image.header);
-        waiting.image = decode_raster({reinterpret_cast<const char*>(image.data.data()), image.data.size()},
-                                      Palette::colours);
+        waiting.image = io::decode_raster(
+            {reinterpret_cast<const char*>(image.data.data()), image.data.size()}, io::Palette::colours);
       } else {
         const auto image = ros::decode<ros::Image>(message.bytes);
         stamp = stamp_of(image.header, message);
@@ -252,7 +252,7 @@ class McapSequence : public SourceSequence {
     while (auto found = next_pair()) {
       const std::size_t index = found->first;
       Pairing::Pair& both = found->second;
-      const std::string name = number_text(index);
+      const std::string name = io::number_text(index);
       const WaitingImage& left = both.left.value;
       const WaitingImage& right = both.right.value;
       if (!left.image || !right.image) {
@@ -267,10 +267,10 @@ class McapSequence : public SourceSequence {
       SequenceFrame frame{name, index, stamp, {}, {}, false};
       frame.frame_id = left.frame_id;
       try {
-        LoadedPair pair = pair_of(*left.image, *right.image, pool_, bits_);
+        io::LoadedPair pair = io::pair_of(*left.image, *right.image, pool_, bits_);
         bits_ = pair.bits;
-        if (std::optional<Raster> grey = grey_at(both.left.stamp, pair.left.gray.size()))
-          pair.left.gray = std::move(pair_of(*grey, *grey, pool_).left.gray);
+        if (std::optional<io::Raster> grey = grey_at(both.left.stamp, pair.left.gray.size()))
+          pair.left.gray = std::move(io::pair_of(*grey, *grey, pool_).left.gray);
         pair = calibration_.rectified(std::move(pair), pool_);
         frame.left = std::move(pair.left);
         frame.right = std::move(pair.right.gray);
@@ -283,7 +283,7 @@ class McapSequence : public SourceSequence {
     end();
     return std::nullopt;
   }
-  std::optional<Raster> grey_at(Stamp stamp, Size size) {
+  std::optional<io::Raster> grey_at(Stamp stamp, Size size) {
     while (!greys_.empty() && greys_.front().first < stamp) greys_.pop_front();
     if (greys_.empty() || greys_.front().first != stamp || greys_.front().second.size != size)
       return std::nullopt;
@@ -311,7 +311,7 @@ class McapSequence : public SourceSequence {
   std::array<Side, 2> sides_;
   Pairing pairing_;
   std::optional<std::uint16_t> grey_;
-  std::deque<std::pair<Stamp, Raster>> greys_;
+  std::deque<std::pair<Stamp, io::Raster>> greys_;
   std::size_t pairs_ = 0;
   int bits_ = 8;
   bool is_past_range_ = false;
@@ -345,4 +345,4 @@ std::optional<fs::path> recording_in(const fs::path& folder) {
               ": is a ros2 bag that is not in MCAP, expected MCAP (ros2 bag convert makes it)");
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -9,7 +9,7 @@
 #include <cairn/input/sequence.hpp>
 
 /// Recordings (MCAP) as sequences; internal to source.
-namespace cairn::io {
+namespace cairn::input {
 
 /// The stereo pair of a recording: images of two topics, raw or compressed, paired by their header stamps.
 /// Calibration: options.calib, else the one recorded by cairn, else camera_info.
@@ -20,4 +20,4 @@ std::unique_ptr<Sequence> open_mcap(const std::filesystem::path& file, const Sou
 /// Error for several parts, or none in MCAP.
 std::optional<std::filesystem::path> recording_in(const std::filesystem::path& folder);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

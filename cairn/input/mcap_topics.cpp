@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 using ros::McapChannel;
@@ -132,4 +132,4 @@ StereoTopics find_stereo_topics(const Channels& channels, const std::string& wan
   return with_companions(channels, *best.front().first, *best.front().second);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -10,7 +10,7 @@
 #include <cairn/ros/mcap.hpp>
 
 /// The stereo topics of a recording; internal to source.
-namespace cairn::io {
+namespace cairn::input {
 
 struct StereoTopics {
   ros::McapChannel left;
@@ -27,4 +27,4 @@ struct StereoTopics {
 StereoTopics find_stereo_topics(const std::map<std::uint16_t, ros::McapChannel>& channels,
                                 const std::string& wanted, const std::string& file);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -9,10 +9,10 @@
 
 /// Cameras on ROS 2 topics, through a module with Cyclone DDS (dds/); a build without it (CAIRN_DDS=OFF)
 /// throws Error. Internal to source.
-namespace cairn::io {
+namespace cairn::input {
 
 /// "ros2:/stereo": the topics /stereo/left/image_rect and so on.
 std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptions& options,
                                     const Pool& pool);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

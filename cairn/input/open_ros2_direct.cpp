@@ -4,11 +4,11 @@
 #include <cairn/input/open_ros2.hpp>
 
 /// Linked directly, without a module: sanitizers need one program.
-namespace cairn::io {
+namespace cairn::input {
 
 std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptions& options,
                                     const Pool& pool) {
-  return dds::ros2_sequence(source, options, pool);
+  return ros2_sequence(source, options, pool);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -4,12 +4,12 @@
 #include <cairn/input/open_ros2.hpp>
 
 /// Loads DDS only if a topic is opened.
-namespace cairn::io {
+namespace cairn::input {
 
 std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptions& options,
                                     const Pool& pool) {
-  const auto entry = reinterpret_cast<dds::Ros2Entry>(module_entry(dds::dds_module(dds::kRos2Entry), source));
+  const auto entry = reinterpret_cast<Ros2Entry>(io::module_entry(dds_module(kRos2Entry), source));
   return std::unique_ptr<Sequence>(entry({source, options, pool}));
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

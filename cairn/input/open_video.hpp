@@ -9,7 +9,7 @@
 
 /// Videos, through a module with OpenCV's videoio (video/); in a build without it (CAIRN_VIDEO=OFF) both
 /// functions throw Error. Internal to source.
-namespace cairn::io {
+namespace cairn::input {
 
 /// One video with both images in every frame, according to options.layout.
 std::unique_ptr<Sequence> open_video(const std::filesystem::path& file, const SourceOptions& options,
@@ -18,4 +18,4 @@ std::unique_ptr<Sequence> open_video(const std::filesystem::path& file, const So
 std::unique_ptr<Sequence> open_videos(const std::filesystem::path& left, const std::filesystem::path& right,
                                       const SourceOptions& options, const Pool& pool);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

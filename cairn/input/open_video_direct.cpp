@@ -4,7 +4,7 @@
 #include <cairn/input/video/opencv_video.hpp>
 
 /// Linked directly, without a module: sanitizers need one program.
-namespace cairn::io {
+namespace cairn::input {
 
 std::unique_ptr<Sequence> open_video(const std::filesystem::path& file, const SourceOptions& options,
                                      const Pool& pool) {
@@ -16,4 +16,4 @@ std::unique_ptr<Sequence> open_videos(const std::filesystem::path& left, const s
   return opencv_videos(left, right, options, pool);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

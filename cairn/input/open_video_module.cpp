@@ -6,16 +6,16 @@
 
 /// FFmpeg and the dependencies of OpenCV's video module are 200 libraries, which take a quarter of a second
 /// to load. So they are loaded with the first video only.
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
 
 VideoEntry video_entry(const fs::path& video) {
   return reinterpret_cast<VideoEntry>(
-      module_entry({"cairn-video.so", kVideoEntry, "videos need", "OpenCV's videoio (libopencv-videoio)",
-                    "package cairn-video; it is built where libopencv-videoio-dev is"},
-                   video.string()));
+      io::module_entry({"cairn-video.so", kVideoEntry, "videos need", "OpenCV's videoio (libopencv-videoio)",
+                        "package cairn-video; it is built where libopencv-videoio-dev is"},
+                       video.string()));
 }
 
 }  // namespace
@@ -29,4 +29,4 @@ std::unique_ptr<Sequence> open_videos(const fs::path& left, const fs::path& righ
   return std::unique_ptr<Sequence>(video_entry(left)({left, right, options, pool}));
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -4,7 +4,7 @@
 
 #include <cairn/input/open_video.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 [[noreturn]] void not_built_in(const std::filesystem::path& file) {
@@ -23,4 +23,4 @@ std::unique_ptr<Sequence> open_videos(const std::filesystem::path& left, const s
   not_built_in(left);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -16,7 +16,7 @@
 #include <cairn/output/trajectory_files.hpp>
 #include <cairn/sequence/stamps.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,7 +67,7 @@ Covariance6 covariance_of(const Vector3& sigma_m, const Vector3& sigma_rad, cons
 std::string rows_text(const std::vector<Stamp>& stamps) {
   const double length_s = seconds_between(stamps.front(), stamps.back());
   return std::to_string(stamps.size()) + " rows" +
-         (length_s > 0 ? text_of(" at %.3g Hz", static_cast<double>(stamps.size() - 1) / length_s) : "");
+         (length_s > 0 ? io::text_of(" at %.3g Hz", static_cast<double>(stamps.size() - 1) / length_s) : "");
 }
 
 void check_stamps(const fs::path& path, const std::vector<Stamp>& stamps,
@@ -91,8 +91,9 @@ void check_common(const fs::path& path, const std::vector<double>& sizes, double
                   const char* unit, const char* hint) {
   const double found = common_largest(sizes);
   if (found <= most) return;
-  throw Error(path.string() + ": found " + what + " of " + text_of("%.4g ", found) + unit +
-              " and more in one row of ten, expected at most " + text_of("%g ", most) + unit + ": " + hint);
+  throw Error(path.string() + ": found " + what + " of " + io::text_of("%.4g ", found) + unit +
+              " and more in one row of ten, expected at most " + io::text_of("%g ", most) + unit + ": " +
+              hint);
 }
 
 /// The index of the first stamp after `moment`.
@@ -169,13 +170,13 @@ class Speeds : public MotionPriors {
   Rows rows_;
 };
 
-Speeds::Rows speeds_of(const fs::path& path, const std::vector<TextLine>& lines) {
-  const std::vector<std::string_view> header = fields_of(lines.front().text);
+Speeds::Rows speeds_of(const fs::path& path, const std::vector<io::TextLine>& lines) {
+  const std::vector<std::string_view> header = io::fields_of(lines.front().text);
   const auto column = [&](std::string_view name) {
     const auto found = std::find(header.begin(), header.end(), name);
     if (found == header.end()) {
       throw Error(
-          place(path, lines.front().number) + ": has no column " + std::string(name) +
+          io::place(path, lines.front().number) + ": has no column " + std::string(name) +
           ", expected t_s, v_m_per_s, omega_rad_per_s; or TUM's lines of 8 numbers, or KITTI's of 12");
     }
     return static_cast<std::size_t>(found - header.begin());
@@ -186,17 +187,17 @@ Speeds::Rows speeds_of(const fs::path& path, const std::vector<TextLine>& lines)
   Speeds::Rows rows;
   std::vector<std::string> names;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::vector<std::string_view> fields = fields_of(lines[i].text);
+    const std::vector<std::string_view> fields = io::fields_of(lines[i].text);
     if (fields.size() < header.size()) {
-      throw Error(place(path, lines[i].number) + ": has " + std::to_string(fields.size()) +
+      throw Error(io::place(path, lines[i].number) + ": has " + std::to_string(fields.size()) +
                   " fields, expected " + std::to_string(header.size()));
     }
     const std::optional<Stamp> stamp = parse_seconds(fields[time]);
     if (!stamp)
-      throw Error(place(path, lines[i].number) + ": found " + quoted(fields[time]) + ", expected s");
+      throw Error(io::place(path, lines[i].number) + ": found " + io::quoted(fields[time]) + ", expected s");
     rows.stamps.push_back(*stamp);
-    rows.ahead_m_s.push_back(number_in(fields[ahead], path, lines[i].number));
-    rows.left_rad_s.push_back(number_in(fields[left], path, lines[i].number));
+    rows.ahead_m_s.push_back(io::number_in(fields[ahead], path, lines[i].number));
+    rows.left_rad_s.push_back(io::number_in(fields[left], path, lines[i].number));
     names.push_back("of line " + std::to_string(lines[i].number));
   }
   check_stamps(path, rows.stamps, names);
@@ -308,7 +309,7 @@ bool says_robot(const fs::path& path, std::string_view text) {
 }
 
 PoseTrack::Rows poses_of(const fs::path& path, std::string_view text, const fs::path& source_folder) {
-  const Trajectory file = load_trajectory(path);
+  const output::Trajectory file = output::load_trajectory(path);
   PoseTrack::Rows rows;
   rows.is_of_robot = says_robot(path, text);
   std::vector<std::string> names;
@@ -420,7 +421,7 @@ void find_bias(Gyroscope::Rows& rows, const std::vector<Vector3>& accelerations)
 
 /// The rotation in T_BS of an EuRoC sensor.yaml: from the sensor to the body.
 Pose body_from_sensor(const fs::path& path) {
-  const std::string text = read_file(path, kMaxTextBytes);
+  const std::string text = io::read_file(path, kMaxTextBytes);
   const std::size_t pose = text.find("T_BS");
   const std::size_t open = pose == std::string::npos ? pose : text.find('[', pose);
   const std::size_t close = open == std::string::npos ? open : text.find(']', open);
@@ -428,14 +429,14 @@ Pose body_from_sensor(const fs::path& path) {
     throw Error(path.string() + ": has no T_BS with its data, expected a 4x4 matrix");
   std::string list = text.substr(open + 1, close - open - 1);
   std::replace(list.begin(), list.end(), '\n', ' ');
-  const std::vector<std::string_view> fields = fields_of(list);
+  const std::vector<std::string_view> fields = io::fields_of(list);
   if (fields.size() != 16)
     throw Error(path.string() + ": T_BS has " + std::to_string(fields.size()) + " numbers, expected 16");
   std::array<double, 16> n{};
   for (std::size_t i = 0; i < n.size(); ++i) {
-    n[i] = number_in(fields[i], path, 1);
+    n[i] = io::number_in(fields[i], path, 1);
     if (!std::isfinite(n[i]))
-      throw Error(path.string() + ": T_BS has " + quoted(fields[i]) + ", expected a number");
+      throw Error(path.string() + ": T_BS has " + io::quoted(fields[i]) + ", expected a number");
   }
   return {{n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]}, {}};
 }
@@ -451,10 +452,10 @@ Pose camera_from_level(double pitch_deg, double roll_deg) {
 }
 
 std::unique_ptr<MotionPriors> load_odometry(const fs::path& path, const fs::path& source_folder) {
-  const std::string text = read_file(path, kMaxLogBytes);
-  const std::vector<TextLine> lines = lines_of(text);
+  const std::string text = io::read_file(path, kMaxLogBytes);
+  const std::vector<io::TextLine> lines = io::lines_of(text);
   if (lines.empty()) throw Error(path.string() + ": contains no lines of numbers, expected odometry");
-  const std::vector<std::string_view> fields = fields_of(lines.front().text);
+  const std::vector<std::string_view> fields = io::fields_of(lines.front().text);
   const bool is_table = std::any_of(fields.begin(), fields.end(), [](std::string_view field) {
     const std::size_t letter = field.find_first_of("abcdfghijklmnopqrstuvwxyz_");
     return letter != std::string_view::npos && field != "nan" && field != "inf" && field != "-nan";
@@ -463,33 +464,33 @@ std::unique_ptr<MotionPriors> load_odometry(const fs::path& path, const fs::path
   if (fields.size() == 8 || fields.size() == 12) {
     return std::make_unique<PoseTrack>(poses_of(path, text, source_folder));
   }
-  throw Error(place(path, lines.front().number) + ": has " + std::to_string(fields.size()) +
+  throw Error(io::place(path, lines.front().number) + ": has " + std::to_string(fields.size()) +
               " numbers, expected a table with t_s, v_m_per_s, omega_rad_per_s, TUM's lines of 8 numbers, or "
               "KITTI's of 12");
 }
 
 std::unique_ptr<MotionPriors> load_imu(const fs::path& path, const Pose& camera_from_imu) {
-  const std::string text = read_file(path, kMaxLogBytes);
+  const std::string text = io::read_file(path, kMaxLogBytes);
   Gyroscope::Rows rows;
   std::vector<Vector3> accelerations;
   std::vector<std::string> names;
   std::vector<double> sizes;
-  for (const TextLine& line : lines_of(text)) {
-    const std::vector<std::string_view> fields = fields_of(line.text);
+  for (const io::TextLine& line : io::lines_of(text)) {
+    const std::vector<std::string_view> fields = io::fields_of(line.text);
     if (fields.size() < 4) {
-      throw Error(place(path, line.number) + ": has " + std::to_string(fields.size()) +
+      throw Error(io::place(path, line.number) + ": has " + std::to_string(fields.size()) +
                   " fields, expected a stamp in ns and rates in rad/s about x, y and z");
     }
     const std::optional<Stamp> stamp = parse_stamp(fields.front());
     const bool is_whole = fields.front().find_first_not_of("-0123456789") == std::string_view::npos;
     if (!stamp || !is_whole) {
-      throw Error(place(path, line.number) + ": found " + quoted(fields.front()) +
+      throw Error(io::place(path, line.number) + ": found " + io::quoted(fields.front()) +
                   ", expected a stamp in whole ns" + (stamp ? "; these are s" : ""));
     }
     const auto three_from = [&](std::size_t first) {
-      return Vector3{number_in(fields[first], path, line.number),
-                     number_in(fields[first + 1], path, line.number),
-                     number_in(fields[first + 2], path, line.number)};
+      return Vector3{io::number_in(fields[first], path, line.number),
+                     io::number_in(fields[first + 1], path, line.number),
+                     io::number_in(fields[first + 2], path, line.number)};
     };
     rows.stamps.push_back(*stamp);
     rows.rates.push_back(three_from(1));
@@ -505,7 +506,7 @@ std::unique_ptr<MotionPriors> load_imu(const fs::path& path, const Pose& camera_
   return std::make_unique<Gyroscope>(std::move(rows), camera_from_imu);
 }
 
-std::optional<Pose> mounting_of_imu(const fs::path& path, const Rectifier* rectifier) {
+std::optional<Pose> mounting_of_imu(const fs::path& path, const io::Rectifier* rectifier) {
   const fs::path folder = path.parent_path();
   const fs::path imu = folder / "sensor.yaml";
   const fs::path camera = folder / ".." / "cam0" / "sensor.yaml";
@@ -516,4 +517,4 @@ std::optional<Pose> mounting_of_imu(const fs::path& path, const Rectifier* recti
   return rectified_from_camera * camera_from_imu;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

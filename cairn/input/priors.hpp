@@ -14,7 +14,7 @@
 #include <cairn/input/sequence.hpp>
 
 /// Camera motion from other sensors, read from files. (docs/sequences.md, "Priors")
-namespace cairn::io {
+namespace cairn::input {
 
 /// A file of odometry or of an IMU, as the motion between any two times that it covers.
 class MotionPriors {
@@ -65,6 +65,6 @@ std::unique_ptr<MotionPriors> load_imu(const std::filesystem::path& path, const 
 /// The mounting of an IMU, from the sensor.yaml next to its file and that of cam0 (EuRoC), and the
 /// rectification of that camera; nullopt if absent: the axes are then assumed to be those of the camera.
 /// Throws Error.
-std::optional<Pose> mounting_of_imu(const std::filesystem::path& path, const Rectifier* rectifier);
+std::optional<Pose> mounting_of_imu(const std::filesystem::path& path, const io::Rectifier* rectifier);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

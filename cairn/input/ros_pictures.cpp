@@ -8,7 +8,7 @@
 #include <cairn/core/error.hpp>
 #include <cstring>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 /// Pixel layout of an encoding.
@@ -35,21 +35,21 @@ auto on_topic(const std::string& topic, const Work& work) {
 
 }  // namespace
 
-Raster raster_of(const ros::Image& image) {
+io::Raster raster_of(const ros::Image& image) {
   const auto* const encoding =
       std::ranges::find_if(kEncodings, [&](const Encoding& e) { return image.encoding == e.name; });
   if (encoding == kEncodings.end()) {
     throw Error("has the encoding " + image.encoding +
                 ", expected mono8, mono16, rgb8, bgr8, rgba8 or bgra8 (debayer others first)");
   }
-  check_sides(image.width, image.height);
+  io::check_sides(image.width, image.height);
   const std::size_t pixel = encoding->channels * static_cast<std::size_t>(encoding->bytes_each);
   if (image.step < image.width * pixel || image.data.size() < std::size_t{image.step} * image.height) {
     throw Error("has " + std::to_string(image.data.size()) + " bytes in rows of " +
                 std::to_string(image.step) + ", expected those of " + std::to_string(image.width) + "x" +
                 std::to_string(image.height) + " pixels of " + std::to_string(pixel));
   }
-  Raster raster;
+  io::Raster raster;
   raster.size = {static_cast<int>(image.width), static_cast<int>(image.height)};
   raster.channels = encoding->channels == 1 ? 1 : 3;
   raster.bytes_each = encoding->bytes_each;
@@ -77,13 +77,13 @@ Raster raster_of(const ros::Image& image) {
   return raster;
 }
 
-LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
-                       const std::string& right_topic, int least_bits, const Pool& pool) {
-  const Raster first = on_topic(left_topic, [&] { return raster_of(left); });
-  const Raster second = on_topic(right_topic, [&] { return raster_of(right); });
-  LoadedPair pair = on_topic(right_topic, [&] { return pair_of(first, second, pool, least_bits); });
+io::LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
+                           const std::string& right_topic, int least_bits, const Pool& pool) {
+  const io::Raster first = on_topic(left_topic, [&] { return raster_of(left); });
+  const io::Raster second = on_topic(right_topic, [&] { return raster_of(right); });
+  io::LoadedPair pair = on_topic(right_topic, [&] { return io::pair_of(first, second, pool, least_bits); });
   pair.right.rgb = {};
   return pair;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -7,16 +7,16 @@
 #include <cairn/io/raster.hpp>
 #include <cairn/ros/messages.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 
 /// The pixels of a message: mono8, mono16, rgb8, bgr8, rgba8, bgra8 and the equivalent plain types (8UC1,
 /// 8UC3, 16UC1), without alpha. Throws Error for other encodings, and if the data contradict the message's
 /// description.
-Raster raster_of(const ros::Image& image);
+io::Raster raster_of(const ros::Image& image);
 
 /// Both images, as load_pair() reads them from files; the colours of the right image are dropped. Throws
 /// Error, prefixed with the topic.
-LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
-                       const std::string& right_topic, int least_bits, const Pool& pool);
+io::LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
+                           const std::string& right_topic, int least_bits, const Pool& pool);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -17,7 +17,7 @@
 #include <cairn/io/names_and_numbers.hpp>
 #include <cairn/ros/mcap.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 /// Whether each of the images can be read by itself.
 bool are_readable(const ListedFrame& files) {
   try {
-    (void)load_picture(files.left);
-    (void)load_picture(files.right);
+    (void)io::load_picture(files.left);
+    (void)io::load_picture(files.right);
     return true;
   } catch (const Error&) {
     return false;
@@ -52,7 +52,7 @@ class FileSequence : public SourceSequence {
     const std::optional<fs::path> found = first.calib ? first.calib : list_.calib;
     each_has_own_ = options.calib.empty() && first.calib && !list_.is_raw && !options.rectify;
     calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw);
-    if (each_has_own_) calib_bytes_ = read_file(calibration_.path, kMaxTextBytes);
+    if (each_has_own_) calib_bytes_ = io::read_file(calibration_.path, kMaxTextBytes);
     first_ = load(first);
     calibration_.suit(first_->left.gray.size());
     if (auto raw = calibration_.remark_on_raw(first.name)) remarks_.push_back(std::move(*raw));
@@ -80,7 +80,7 @@ class FileSequence : public SourceSequence {
 
   SequenceFrame load(const ListedFrame& files) {
     if (each_has_own_) check_calibration(files);
-    LoadedPair pair = load_pair(files.left, files.right, pool_, bits_);
+    io::LoadedPair pair = io::load_pair(files.left, files.right, pool_, bits_);
     // Raw images are compared by their own size.
     if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
       throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +
@@ -97,9 +97,9 @@ class FileSequence : public SourceSequence {
 
   void check_calibration(const ListedFrame& files) {
     if (!files.calib || *files.calib == calibration_.path ||
-        read_file(*files.calib, kMaxTextBytes) == calib_bytes_)
+        io::read_file(*files.calib, kMaxTextBytes) == calib_bytes_)
       return;
-    if (!is_same(load_calibration(*files.calib, list_.grey_cameras).rig, calibration_.says.rig)) {
+    if (!is_same(io::load_calibration(*files.calib, list_.grey_cameras).rig, calibration_.says.rig)) {
       throw Error(files.calib->string() + ": differs from the calibration " + calibration_.path.string() +
                   ", expected one rig for the whole sequence");
     }
@@ -139,7 +139,7 @@ void check(const SourceOptions& options) {
 
 /// The MCAP file that the source is, or that the folder contains.
 std::optional<fs::path> recording_of(const std::string& source) {
-  if (is_folder(source)) return recording_in(source);
+  if (io::is_folder(source)) return recording_in(source);
   return ros::is_mcap(source) ? std::optional<fs::path>(source) : std::nullopt;
 }
 
@@ -162,9 +162,9 @@ std::unique_ptr<Sequence> open_pair(const std::string& left, const std::string& 
     for (const std::string& side : {left, right}) {
       if (!exists(side)) throw Error(side + ": not found, expected a folder, a video or a pattern");
     }
-    if (is_folder(left) != is_folder(right))
+    if (io::is_folder(left) != io::is_folder(right))
       throw Error(left + "," + right + ": is one folder and one file, expected two folders or two files");
-    if (!is_folder(left)) return open_videos(left, right, options, pool);
+    if (!io::is_folder(left)) return open_videos(left, right, options, pool);
   } else if (is_pattern(left) != is_pattern(right)) {
     throw Error(left + "," + right + ": has one pattern, expected two");
   }
@@ -234,7 +234,7 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
       throw Error(source + ": is one pattern, expected two: left_%04d.png,right_%04d.png");
     throw Error(source + ": not found, expected a folder of frames, a video, or LEFT,RIGHT");
   }
-  if (!is_folder(source)) {
+  if (!io::is_folder(source)) {
     if (options.layout.empty()) {
       throw Error(source +
                   ": is one file, expected --layout side_by_side or top_bottom for a video with both images, "
@@ -247,4 +247,4 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
   return std::make_unique<FileSequence>(name_of(folder), list_folder(folder, options), options, pool);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -19,14 +19,14 @@
 #include <cairn/sequence/pose.hpp>
 
 /// Sequences of stereo pairs, decoded one pair at a time. (docs/sequences.md, "Sources")
-namespace cairn::io {
+namespace cairn::input {
 
 /// One rectified pair of a sequence.
 struct SequenceFrame {
   std::string name;       // of the folder, of the left file without extension, or the number in a video
   std::size_t index = 0;  // in the source, from 0; --frames counts these
   Stamp stamp;            // later than the one before
-  LoadedImage left;
+  io::LoadedImage left;
   Image<Gray> right;
   bool after_gap = false;  // more than SourceOptions::max_gap_s after the frame before
   // For cameras: the arrival time by the steady clock of this computer; nullopt for files.
@@ -113,7 +113,7 @@ class Sequence {
   /// The mounting of the rig from its calibration: Config::ground.known.
   [[nodiscard]] virtual const KnownGround& ground() const = 0;
   /// The rectification of raw images by next(); null for rectified sources.
-  [[nodiscard]] virtual const Rectifier* rectifier() const = 0;
+  [[nodiscard]] virtual const io::Rectifier* rectifier() const = 0;
   /// The origin of the stamps: "stamps.txt", "a rate of 10 Hz".
   [[nodiscard]] virtual std::string stamps_from() const = 0;
   /// Remarks on frames skipped or noticed so far.
@@ -139,4 +139,4 @@ class Sequence {
 std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceOptions& options,
                                         const Pool& pool = {});
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -12,20 +12,20 @@
 #include <cairn/output/json_line.hpp>
 #include <cairn/output/trajectory_files.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using output::Json = nlohmann::json;
 
 constexpr std::int64_t kMaxId = 65'535;
 constexpr std::int64_t kMaxFrames = 10'000'000;
 
-Json load_json(const fs::path& path) {
+output::Json load_json(const fs::path& path) {
   constexpr std::size_t kMax = std::size_t{64} << 20;
-  std::optional<Json> json;
+  std::optional<output::Json> json;
   try {
-    json = parsed_json(read_file(path, kMax));
+    json = output::parsed_json(io::read_file(path, kMax));
   } catch (const Error& error) {
     const std::string message = error.what();
     throw Error(message.starts_with(path.string()) ? message : path.string() + ": " + message);
@@ -36,13 +36,13 @@ Json load_json(const fs::path& path) {
 
 /// Calls take(line) for each entry of a list, and prefixes errors with the file's name.
 template <class Take>
-void each_in(const fs::path& path, const Json& json, const char* key, const Take& take) {
+void each_in(const fs::path& path, const output::Json& json, const char* key, const Take& take) {
   try {
-    const JsonLine whole(json);
-    const Json& list = whole.at(key);
+    const output::JsonLine io::whole(json);
+    const output::Json& list = whole.at(key);
     if (list.is_null()) return;
     if (!list.is_array()) whole.refuse(key, "a list");
-    for (const Json& one : list) take(JsonLine(one));
+    for (const output::Json& one : list) take(output::JsonLine(one));
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }
@@ -50,7 +50,7 @@ void each_in(const fs::path& path, const Json& json, const char* key, const Take
 
 std::map<std::int64_t, TruePlace> load_places(const fs::path& path) {
   std::map<std::int64_t, TruePlace> places;
-  each_in(path, load_json(path), "objects", [&](const JsonLine& object) {
+  each_in(path, load_json(path), "objects", [&](const output::JsonLine& object) {
     places[object.integer("id", 1, kMaxId)] = {object.maybe_point("centroid_visible_cam"),
                                                object.maybe_point("centroid_world")};
   });
@@ -59,7 +59,7 @@ std::map<std::int64_t, TruePlace> load_places(const fs::path& path) {
 
 std::vector<TrueEvent> load_events(const fs::path& path) {
   std::vector<TrueEvent> events;
-  each_in(path, load_json(path), "events", [&](const JsonLine& line) {
+  each_in(path, load_json(path), "events", [&](const output::JsonLine& line) {
     TrueEvent event;
     event.id = line.integer("id", 1, kMaxId);
     event.is_in_view = line.text("what").find("in view") != std::string::npos;
@@ -75,7 +75,7 @@ std::vector<TrueEvent> load_events(const fs::path& path) {
 TrueSequence from_mots(const fs::path& path) {
   TrueSequence truth;
   truth.is_numbered = true;
-  for (TrackFrame& frame : load_mots(path).frames) {
+  for (output::TrackFrame& frame : output::load_mots(path).frames) {
     TrueFrame one;
     one.name = frame.name;
     one.masks = std::move(frame.tracks);
@@ -105,10 +105,11 @@ TrueSequence load_truth(const fs::path& path) {
   if (truth.frames.empty())
     throw Error(path.string() + ": has no sub-folder with objects.png, expected one per frame");
   std::sort(truth.frames.begin(), truth.frames.end(),
-            [](const TrueFrame& a, const TrueFrame& b) { return in_natural_order(a.name, b.name); });
+            [](const TrueFrame& a, const TrueFrame& b) { return io::in_natural_order(a.name, b.name); });
   for (TrueFrame& frame : truth.frames) {
     const fs::path folder = frame.labels.parent_path();
-    if (fs::exists(folder / "pose.txt", ignored)) frame.world_from_camera = load_pose(folder / "pose.txt");
+    if (fs::exists(folder / "pose.txt", ignored))
+      frame.world_from_camera = output::load_pose(folder / "pose.txt");
     if (fs::exists(folder / "scene.json", ignored)) frame.places = load_places(folder / "scene.json");
   }
   truth.has_events = fs::exists(path / "events.json", ignored);
@@ -117,13 +118,14 @@ TrueSequence load_truth(const fs::path& path) {
 }
 
 Image<TruthId> load_true_labels(const TrueFrame& frame) {
-  if (!frame.labels.empty()) return truth_ids(load_labels(frame.labels));
+  if (!frame.labels.empty()) return io::truth_ids(io::load_labels(frame.labels));
   const auto first = std::find_if(frame.masks.begin(), frame.masks.end(),
-                                  [](const TrackRecord& track) { return track.mask.has_value(); });
+                                  [](const output::TrackRecord& track) { return track.mask.has_value(); });
   if (first == frame.masks.end()) return {};
-  const Image<TrackId> ids = track_labels(frame.masks, first->mask->size, "truth: frame " + frame.name);
+  const Image<TrackId> ids =
+      output::track_labels(frame.masks, first->mask->size, "truth: frame " + frame.name);
   Image<TruthId> labels(ids.size(), TruthId::none, {});
-  for (const TrackRecord& track : frame.masks) {
+  for (const output::TrackRecord& track : frame.masks) {
     const TruthId truth =
         track.is_dont_care ? TruthId::dont_care : TruthId{static_cast<std::int32_t>(number(track.id))};
     for (int y = 0; y < ids.height(); ++y) {
@@ -135,4 +137,4 @@ Image<TruthId> load_true_labels(const TrueFrame& frame) {
   return labels;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

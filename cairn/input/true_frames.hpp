@@ -15,7 +15,7 @@
 #include <cairn/output/track_files.hpp>
 
 /// The ground truth of a sequence. (docs/formats.md, "The truth of a sequence")
-namespace cairn::io {
+namespace cairn::input {
 
 /// An object of a scene.json.
 struct TruePlace {
@@ -29,8 +29,8 @@ struct TrueFrame {
   std::optional<Pose> world_from_camera;  // of pose.txt
   std::map<std::int64_t, TruePlace> places;
   // One of the two:
-  std::filesystem::path labels;    // objects.png
-  std::vector<TrackRecord> masks;  // of a MOTS text
+  std::filesystem::path labels;            // objects.png
+  std::vector<output::TrackRecord> masks;  // of a MOTS text
 };
 
 /// An entry of an events.json: a change that a person made to an object.
@@ -58,4 +58,4 @@ TrueSequence load_truth(const std::filesystem::path& path);
 /// The ids of a frame. Throws Error if the file cannot be read, or masks overlap or differ in size.
 Image<TruthId> load_true_labels(const TrueFrame& frame);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

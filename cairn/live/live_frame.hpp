@@ -61,7 +61,7 @@ class Products {
 
 /// The results of one pair, shared by all sinks, hence immutable.
 struct LiveFrame {
-  std::shared_ptr<const io::SequenceFrame> pair;
+  std::shared_ptr<const input::SequenceFrame> pair;
   TrackedFrame step;
   std::vector<LandmarkOfTrack> landmarks;
   std::vector<LandmarkEvent> events;
@@ -69,9 +69,9 @@ struct LiveFrame {
   Clock::time_point arrived;          // of the pair
   Clock::time_point started;
   Clock::time_point done;
-  std::vector<io::StageTime> stages;
+  std::vector<output::StageTime> stages;
   Drops drops;
-  io::SourceStatus source;
+  input::SourceStatus source;
   double rate_hz = 0;  // of processed frames, over about a second
   // The configuration used; the revision counts the changes.
   std::shared_ptr<const FollowConfig> config;

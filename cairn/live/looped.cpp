@@ -8,8 +8,8 @@
 namespace cairn::live {
 namespace {
 
-using io::Sequence;
-using io::SequenceFrame;
+using input::Sequence;
+using input::SequenceFrame;
 
 class LoopedSequence : public Sequence {
  public:
@@ -45,7 +45,7 @@ class LoopedSequence : public Sequence {
   [[nodiscard]] const KnownGround& ground() const override { return inner_->ground(); }
   [[nodiscard]] const io::Rectifier* rectifier() const override { return inner_->rectifier(); }
   [[nodiscard]] std::string stamps_from() const override { return inner_->stamps_from(); }
-  [[nodiscard]] const std::vector<io::SourceRemark>& remarks() const override { return inner_->remarks(); }
+  [[nodiscard]] const std::vector<input::SourceRemark>& remarks() const override { return inner_->remarks(); }
   [[nodiscard]] const std::string& ended_early() const override { return inner_->ended_early(); }
 
  private:

@@ -12,6 +12,6 @@ namespace cairn::live {
 /// A sequence of files that repeats endlessly: for demonstrations, soak tests and experiments. Stamps
 /// continue to ascend, and each round begins after a gap, since the camera jumps. `open` opens the source
 /// again; throws Error if that does, or if it is a camera.
-std::unique_ptr<io::Sequence> looped(std::function<std::unique_ptr<io::Sequence>()> open);
+std::unique_ptr<input::Sequence> looped(std::function<std::unique_ptr<input::Sequence>()> open);
 
 }  // namespace cairn::live

@@ -88,7 +88,7 @@ void Recording::add_frame(const LiveFrame& frame, std::uint64_t skipped_before) 
   const Stamp stamp = frame.step.stamp;
   add_config(frame);
   if (skipped_before > 0)
-    write_text(skipped_, "/cairn/skipped", stamp, io::json_text({{"frames", skipped_before}}));
+    write_text(skipped_, "/cairn/skipped", stamp, output::json_text({{"frames", skipped_before}}));
   for (auto& [topic, channel] : channels_) {
     const MessagePtr message = message_of(*topic, frame, form_);
     if (!message) continue;
@@ -292,11 +292,11 @@ RecordWhat parse_record_what(std::string_view text) {
   }
 }
 
-RecordedRun recorded_run(const io::Sequence& source, const std::string& name, const std::string& preset,
+RecordedRun recorded_run(const input::Sequence& source, const std::string& name, const std::string& preset,
                          bool tracks) {
-  return {io::without_password(name), source.rig(),    source.image_size(),
-          source.disparities(),       source.ground(), preset,
-          source.stamps_from(),       tracks};
+  return {input::without_password(name), source.rig(),    source.image_size(),
+          source.disparities(),          source.ground(), preset,
+          source.stamps_from(),          tracks};
 }
 
 std::string recording_name() {

@@ -40,7 +40,7 @@ struct RecordedRun {
   bool tracks = true;
 };
 /// For an open source.
-RecordedRun recorded_run(const io::Sequence& source, const std::string& name, const std::string& preset,
+RecordedRun recorded_run(const input::Sequence& source, const std::string& name, const std::string& preset,
                          bool tracks);
 
 struct RecorderOptions {

@@ -7,7 +7,7 @@
 namespace cairn::live {
 
 std::unique_ptr<Sink> publish_ros2(const Ros2Options& options, const std::optional<StereoRig>& rig) {
-  return dds::ros2_sink(options, rig);
+  return ros2_sink(options, rig);
 }
 
 }  // namespace cairn::live

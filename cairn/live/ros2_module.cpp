@@ -7,7 +7,7 @@ namespace cairn::live {
 
 std::unique_ptr<Sink> publish_ros2(const Ros2Options& options, const std::optional<StereoRig>& rig) {
   const auto entry =
-      reinterpret_cast<dds::Ros2SinkEntry>(io::module_entry(dds::dds_module(dds::kRos2SinkEntry), "--ros2"));
+      reinterpret_cast<Ros2SinkEntry>(io::module_entry(input::dds_module(kRos2SinkEntry), "--ros2"));
   return std::unique_ptr<Sink>(entry(options, rig));
 }
 

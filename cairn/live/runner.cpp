@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 /// Interval at which a wait checks whether to give up.
 constexpr auto kNotice = 50ms;
 
-Exec noting_stages(Exec exec, std::vector<io::StageTime>& stages) {
+Exec noting_stages(Exec exec, std::vector<output::StageTime>& stages) {
   exec.observe = [&stages](std::string_view stage, const StageResult&, double ms) {
     stages.push_back({std::string(stage), ms});
   };
@@ -26,7 +26,7 @@ Exec noting_stages(Exec exec, std::vector<io::StageTime>& stages) {
 
 }  // namespace
 
-Runner::Runner(io::Sequence& source, const std::string& source_name, const io::SensorFiles& files,
+Runner::Runner(input::Sequence& source, const std::string& source_name, const SensorFiles& files,
                FollowConfig config, LiveOptions options, const Exec& exec)
     : source_(source),
       image_size_(source.image_size()),
@@ -109,7 +109,7 @@ std::shared_ptr<LiveFrame> Runner::next() {
   auto pair = source_.next();
   if (!pair) return nullptr;
   wait_for_its_time(*pair);
-  return work(std::make_shared<io::SequenceFrame>(std::move(*pair)));
+  return work(std::make_shared<input::SequenceFrame>(std::move(*pair)));
 }
 
 /// The newest pair that is not too old; null at the end.
@@ -137,14 +137,14 @@ void Runner::read_source(NewestSlot<PairPtr>& slot) {
     wait_for_its_time(*pair);
     if (!pair->arrived) pair->arrived = Clock::now();
     // A gap before a dropped pair counts for the next one.
-    slot.put(std::make_shared<io::SequenceFrame>(std::move(*pair)), [](PairPtr& fresh, const PairPtr& old) {
-      fresh->after_gap = fresh->after_gap || old->after_gap;
-    });
+    slot.put(
+        std::make_shared<input::SequenceFrame>(std::move(*pair)),
+        [](PairPtr& fresh, const PairPtr& old) { fresh->after_gap = fresh->after_gap || old->after_gap; });
   }
 }
 
 /// Files are played at the pace of their stamps; cameras set their own.
-void Runner::wait_for_its_time(const io::SequenceFrame& pair) {
+void Runner::wait_for_its_time(const input::SequenceFrame& pair) {
   if (source_.status().is_live) return;
   bool was_paused = false;
   while (is_paused_ && !is_over()) {
@@ -167,7 +167,7 @@ void Runner::wait_for_its_time(const io::SequenceFrame& pair) {
   played_ = {pair.stamp, due};
 }
 
-TrackedFrame Runner::step_of(const io::SequenceFrame& pair) {
+TrackedFrame Runner::step_of(const input::SequenceFrame& pair) {
   if (options_.step) return options_.step(pair, *used_config_, exec_);
   if (options_.tracks) return follow_.next(pair);
   TrackedFrame step;

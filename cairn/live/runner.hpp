@@ -23,7 +23,7 @@ struct LiveOptions {
   std::optional<std::chrono::milliseconds> max_age;
   bool tracks = true;  // false: single frames, as by segment()
   // Instead of both: another way to process a pair, e.g. odometry alone.
-  std::function<TrackedFrame(const io::SequenceFrame&, const FollowConfig&, const Exec&)> step;
+  std::function<TrackedFrame(const input::SequenceFrame&, const FollowConfig&, const Exec&)> step;
   // Playback speed of files relative to their stamps; 0 = as fast as possible.
   double pace = 1;
   std::optional<std::chrono::nanoseconds> duration;
@@ -55,7 +55,7 @@ struct LiveSummary {
 class Runner {
  public:
   /// `source` and the sinks must outlive it. Throws Error like SequenceRun.
-  Runner(io::Sequence& source, const std::string& source_name, const io::SensorFiles& files,
+  Runner(input::Sequence& source, const std::string& source_name, const SensorFiles& files,
          FollowConfig config, LiveOptions options, const Exec& exec);
   void add(Sink& sink) { sinks_.push_back(&sink); }
 
@@ -94,25 +94,25 @@ class Runner {
   [[nodiscard]] bool is_paused() const { return is_paused_; }
 
  private:
-  using PairPtr = std::shared_ptr<io::SequenceFrame>;
+  using PairPtr = std::shared_ptr<input::SequenceFrame>;
 
   [[nodiscard]] bool is_over() const;
   void read_source(NewestSlot<PairPtr>& slot);
-  void wait_for_its_time(const io::SequenceFrame& pair);
+  void wait_for_its_time(const input::SequenceFrame& pair);
   PairPtr newest(NewestSlot<PairPtr>& slot);
-  TrackedFrame step_of(const io::SequenceFrame& pair);
+  TrackedFrame step_of(const input::SequenceFrame& pair);
   std::shared_ptr<LiveFrame> work(PairPtr pair);
   void take_config();
   void take_over(const std::optional<ControlEvent>& control);
 
-  io::Sequence& source_;
+  input::Sequence& source_;
   Size image_size_;
   bool has_rig_;
   LiveOptions options_;
   std::vector<Sink*> sinks_;
-  std::vector<io::StageTime> stages_;
+  std::vector<output::StageTime> stages_;
   Exec exec_;
-  io::SequenceRun follow_;
+  SequenceRun follow_;
   std::shared_ptr<const FollowConfig> first_config_;
   std::shared_ptr<const FollowConfig> used_config_;
   std::uint64_t used_revision_ = 0;

@@ -12,13 +12,13 @@
 #include <cairn/input/camera/without_password.hpp>
 #include <cairn/output/trajectory_files.hpp>
 
-namespace cairn::io {
+namespace cairn::live {
 namespace {
 
 namespace fs = std::filesystem;
 
 std::vector<TimedPose> known_poses(const fs::path& path) {
-  Trajectory known = load_trajectory(path);
+  output::Trajectory known = output::load_trajectory(path);
   if (!known.has_stamps) {
     throw Error(path.string() +
                 ": its poses have no stamps, expected the form of TUM or EuRoC, or a times.txt next to it");
@@ -41,15 +41,16 @@ std::optional<Pose> pose_at(const std::vector<TimedPose>& poses, Stamp stamp, co
 
 }  // namespace
 
-std::unique_ptr<MotionPriors> open_priors(const std::optional<fs::path>& odometry,
-                                          const std::optional<fs::path>& imu, const std::string& source_name,
-                                          const Sequence& source) {
-  if (odometry) return load_odometry(*odometry, source_name);
-  if (imu) return load_imu(*imu, mounting_of_imu(*imu, source.rectifier()).value_or(Pose{}));
+std::unique_ptr<input::MotionPriors> open_priors(const std::optional<fs::path>& odometry,
+                                                 const std::optional<fs::path>& imu,
+                                                 const std::string& source_name,
+                                                 const input::Sequence& source) {
+  if (odometry) return input::load_odometry(*odometry, source_name);
+  if (imu) return input::load_imu(*imu, input::mounting_of_imu(*imu, source.rectifier()).value_or(Pose{}));
   return nullptr;
 }
 
-SequenceRun::SequenceRun(const Sequence& source, std::string source_name, const SensorFiles& files,
+SequenceRun::SequenceRun(const input::Sequence& source, std::string source_name, const SensorFiles& files,
                          FollowConfig config, Exec exec)
     : source_(source),
       source_name_(std::move(source_name)),
@@ -61,20 +62,21 @@ SequenceRun::SequenceRun(const Sequence& source, std::string source_name, const 
     poses_name_ = files.poses->string();
     poses_ = known_poses(*files.poses);
   }
-  if (files.scan) scans_ = load_scans(*files.scan);
+  if (files.scan) scans_ = input::load_scans(*files.scan);
   if (files.map) {
     map_.emplace(
         MapFile::open(*files.map, is_map_read_only_ ? MapMode::read_only : MapMode::update, source.rig()));
   }
 }
 
-TrackedFrame SequenceRun::next(const SequenceFrame& frame) {
+TrackedFrame SequenceRun::next(const input::SequenceFrame& frame) {
   std::optional<MotionPrior> prior;
-  if (priors_ && has_begun_) prior = priors_->between(before_, frame.stamp, camera_from_level(pose_before_));
+  if (priors_ && has_begun_)
+    prior = priors_->between(before_, frame.stamp, input::camera_from_level(pose_before_));
   if (frame.after_gap) follower_.forget();
   TrackedFrame step =
       follower_.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp, prior,
-                     pose_at(poses_, frame.stamp, poses_name_), scan_at(scans_, frame.stamp));
+                     pose_at(poses_, frame.stamp, poses_name_), input::scan_at(scans_, frame.stamp));
   if (source_.rig()) mark(step, frame);
   has_begun_ = true;
   before_ = step.stamp;
@@ -82,10 +84,10 @@ TrackedFrame SequenceRun::next(const SequenceFrame& frame) {
   return step;
 }
 
-void SequenceRun::mark(const TrackedFrame& step, const SequenceFrame& frame) {
+void SequenceRun::mark(const TrackedFrame& step, const input::SequenceFrame& frame) {
   const bool writes = map_ && !is_map_read_only_;
   if (!has_begun_) {
-    const std::int64_t run = writes ? map_->begin_run(without_password(source_name_), step.stamp) : 0;
+    const std::int64_t run = writes ? map_->begin_run(input::without_password(source_name_), step.stamp) : 0;
     marked_.state = begin_landmarks(map_ ? map_->load() : LandmarkMap{}, run, start_);
   }
   const LandmarkFrame seen = landmark_frame(step, *source_.rig(), frame.left.gray, frame.left.rgb);
@@ -98,4 +100,4 @@ void SequenceRun::close(RunState state) {
   map_.reset();
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::live

@@ -15,7 +15,7 @@
 #include <cairn/sequence/map_file.hpp>
 #include <cairn/sequence/trajectory_error.hpp>
 
-namespace cairn::io {
+namespace cairn::live {
 
 /// Data files of other sensors for a sequence. At most one of odometry, imu and poses; all are in metres, so
 /// the source needs a rig.
@@ -31,9 +31,10 @@ struct SensorFiles {
 
 /// The motion priors from odometry or gyroscope, whichever is given; null without either. `source_name`: the
 /// argument of open_sequence(). Throws Error like load_odometry() and load_imu().
-std::unique_ptr<MotionPriors> open_priors(const std::optional<std::filesystem::path>& odometry,
-                                          const std::optional<std::filesystem::path>& imu,
-                                          const std::string& source_name, const Sequence& source);
+std::unique_ptr<input::MotionPriors> open_priors(const std::optional<std::filesystem::path>& odometry,
+                                                 const std::optional<std::filesystem::path>& imu,
+                                                 const std::string& source_name,
+                                                 const input::Sequence& source);
 
 /// Follows a source frame by frame, with data of other sensors and landmarks; Runner (runner.hpp) is the loop
 /// around it.
@@ -41,12 +42,12 @@ class SequenceRun {
  public:
   /// Opens the files; the run of a map begins with the first frame. Throws Error like the readers,
   /// MapFile::open() and Follower, and for poses without stamps. `source` must outlive it.
-  SequenceRun(const Sequence& source, std::string source_name, const SensorFiles& files, FollowConfig config,
-              Exec exec);
+  SequenceRun(const input::Sequence& source, std::string source_name, const SensorFiles& files,
+              FollowConfig config, Exec exec);
 
   /// The next frame of the source. Throws Error like Follower::next() and MapFile::write(), and if the known
   /// poses have none within 5 ms of its stamp.
-  TrackedFrame next(const SequenceFrame& frame);
+  TrackedFrame next(const input::SequenceFrame& frame);
 
   /// The landmarks of the last frame; empty without a rig.
   [[nodiscard]] const LandmarkUpdate& marked() const { return marked_; }
@@ -57,12 +58,12 @@ class SequenceRun {
   void close(RunState state);
 
  private:
-  void mark(const TrackedFrame& step, const SequenceFrame& frame);
+  void mark(const TrackedFrame& step, const input::SequenceFrame& frame);
 
-  const Sequence& source_;
+  const input::Sequence& source_;
   std::string source_name_;
   Follower follower_;
-  std::unique_ptr<MotionPriors> priors_;
+  std::unique_ptr<input::MotionPriors> priors_;
   std::vector<TimedPose> poses_;
   std::string poses_name_;
   std::vector<LaserScan> scans_;
@@ -75,4 +76,4 @@ class SequenceRun {
   Pose pose_before_;
 };
 
-}  // namespace cairn::io
+}  // namespace cairn::live

@@ -11,7 +11,7 @@
 namespace cairn::live {
 namespace {
 
-using io::Json;
+using output::Json;
 
 constexpr int kJpegQuality = 85;
 
@@ -76,7 +76,7 @@ Message frames(const LiveFrame& frame, const MessageForm& form) {
 
 Message stats(const LiveFrame& frame, const MessageForm& form) {
   Json stages = Json::object();
-  for (const io::StageTime& stage : frame.stages) stages[stage.stage] = stage.milliseconds;
+  for (const output::StageTime& stage : frame.stages) stages[stage.stage] = stage.milliseconds;
   Json dropped{{"at_source", frame.drops.at_source},
                {"replaced", frame.drops.replaced},
                {"too_old", frame.drops.too_old}};
@@ -95,7 +95,7 @@ Message stats(const LiveFrame& frame, const MessageForm& form) {
                  {"connected", frame.source.is_connected},
                  {"trouble", frame.source.trouble},
                  {"revision", frame.revision}};
-  return ros::encode(ros::String{io::json_text(all)});
+  return ros::encode(ros::String{output::json_text(all)});
 }
 
 Message transforms(const LiveFrame& frame, const MessageForm& form) {
@@ -253,16 +253,17 @@ MessagePtr message_of(const Topic& topic, const LiveFrame& frame, const MessageF
 
 std::shared_ptr<const Json> results_of(const LiveFrame& frame, const MessageForm& form) {
   return frame.products.get("results", [&] {
-    const io::SequenceFrame& pair = *frame.pair;
-    if (form.tracks) return io::json_of(frame.step, pair.name, frame.landmarks, pair.frame_id);
-    return io::json_of(frame.step.frame,
-                       {form.preset, frame.config->segmentation, form.rig, {}, false, frame.step.stamp.ns});
+    const input::SequenceFrame& pair = *frame.pair;
+    if (form.tracks) return output::json_of(frame.step, pair.name, frame.landmarks, pair.frame_id);
+    return output::json_of(
+        frame.step.frame,
+        {form.preset, frame.config->segmentation, form.rig, {}, false, frame.step.stamp.ns});
   });
 }
 
 std::shared_ptr<const std::string> text_of(const LiveFrame& frame, const MessageForm& form) {
   return frame.products.get(
-      "text", [&] { return io::json_text(*results_of(frame, form), form.tracks ? -1 : 1) + "\n"; });
+      "text", [&] { return output::json_text(*results_of(frame, form), form.tracks ? -1 : 1) + "\n"; });
 }
 
 std::shared_ptr<const std::string> left_jpeg(const LiveFrame& frame) {

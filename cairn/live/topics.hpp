@@ -63,7 +63,7 @@ std::string full_name(const Topic& topic, const std::string& name_space = "/cair
 MessagePtr message_of(const Topic& topic, const LiveFrame& frame, const MessageForm& form);
 
 /// The frame as in tracks.jsonl; without tracking as in objects.json.
-std::shared_ptr<const io::Json> results_of(const LiveFrame& frame, const MessageForm& form);
+std::shared_ptr<const output::Json> results_of(const LiveFrame& frame, const MessageForm& form);
 /// The text of it, with a newline.
 std::shared_ptr<const std::string> text_of(const LiveFrame& frame, const MessageForm& form);
 /// The left image as JPEG.

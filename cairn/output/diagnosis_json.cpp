@@ -6,7 +6,7 @@
 #include <cairn/output/json.hpp>
 #include <cmath>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 constexpr double kDegrees = 57.29577951308232;
@@ -117,4 +117,4 @@ std::string synchrony_json(const Synchrony& synchrony, const std::vector<std::st
   return json_text(json_of(synchrony, names));
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -9,7 +9,7 @@
 
 /// What `cairn doctor --json` writes of each pair, each finding and the sequence (docs/doctor.md); Python has
 /// the same.
-namespace cairn::io {
+namespace cairn::output {
 
 /// One number of a pair; NaN where it was not measured.
 struct PairNumber {
@@ -27,4 +27,4 @@ std::string finding_json(const Finding& finding, const std::vector<std::string>&
 /// `names`: of its frames; without them frames go by their numbers.
 std::string synchrony_json(const Synchrony& synchrony, const std::vector<std::string>& names);
 
-}  // namespace cairn::io
+}  // namespace cairn::output

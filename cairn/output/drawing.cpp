@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cairn::io::drawing {
+namespace cairn::output::drawing {
 namespace {
 
 // ---- lines ----
@@ -309,4 +309,4 @@ Image<Rgb> enlarged(const Image<Rgb>& image, int factor) {
   return large;
 }
 
-}  // namespace cairn::io::drawing
+}  // namespace cairn::output::drawing

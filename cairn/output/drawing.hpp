@@ -8,7 +8,7 @@
 
 /// Lines, areas and text on colour images, anti-aliased. Everything is clipped at the border of the image. Internal to
 /// output.
-namespace cairn::io::drawing {
+namespace cairn::output::drawing {
 
 struct Point {
   int x = 0;
@@ -32,4 +32,4 @@ void draw_text(Image<Rgb>& canvas, std::string_view text, Point at, float height
 /// The image at `factor` times its size, by bicubic interpolation (Keys 1981).
 Image<Rgb> enlarged(const Image<Rgb>& image, int factor);
 
-}  // namespace cairn::io::drawing
+}  // namespace cairn::output::drawing

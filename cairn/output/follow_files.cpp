@@ -14,7 +14,7 @@
 #include <map>
 #include <system_error>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,9 +48,9 @@ TrackLabels track_labels_of(const TrackedFrame& step) {
   return shown;
 }
 
-Rle rle_of(const TrackLabels& shown, TrackId id) {
-  return encode_rle(shown.labels, ObjectId{static_cast<std::int32_t>(number(id))},
-                    shown.boxes.at(number(id)));
+io::Rle rle_of(const TrackLabels& shown, TrackId id) {
+  return io::encode_rle(shown.labels, ObjectId{static_cast<std::int32_t>(number(id))},
+                        shown.boxes.at(number(id)));
 }
 
 /// Without a rig there are no metric positions, so the pose is null.
@@ -118,7 +118,7 @@ Json track_json(const Track& track, const TrackedFrame& step, const TrackLabels&
   }
   if (track.object == ObjectId::none) return j;
   const Rect box = shown.boxes.at(number(track.id));
-  const Rle rle = rle_of(shown, track.id);
+  const io::Rle rle = rle_of(shown, track.id);
   j["bbox"] = {box.x, box.y, box.width, box.height};
   j["rle"] = {{"size", {rle.size.height, rle.size.width}}, {"counts", rle.counts}};
   return j;
@@ -218,7 +218,7 @@ std::string masks_mots(const TrackedFrame& step) {
   std::string lines;
   for (const Track& track : step.tracks.list) {
     if (track.object == ObjectId::none || track.state == TrackState::tentative) continue;
-    const Rle rle = rle_of(shown, track.id);
+    const io::Rle rle = rle_of(shown, track.id);
     lines += std::to_string(step.index) + " " + std::to_string(number(track.id)) + " 1 " +
              std::to_string(rle.size.height) + " " + std::to_string(rle.size.width) + " " + rle.counts + "\n";
   }
@@ -248,7 +248,7 @@ Image<Rgb> draw_tracks(View<const Gray> left, View<const Rgb> left_rgb, const Tr
 }
 
 FollowFiles::FollowFiles(fs::path folder) : folder_(std::move(folder)) {
-  make_folder(folder_);
+  io::make_folder(folder_);
   for (const auto& [file, name] : {std::pair{&tracks_, "tracks.jsonl"},
                                    {&poses_, "poses.tum"},
                                    {&masks_, "tracks.mots.txt"},
@@ -278,4 +278,4 @@ void FollowFiles::add_event(const std::string& line) {
   append(events_, "events.jsonl", line);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

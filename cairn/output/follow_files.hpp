@@ -11,7 +11,7 @@
 #include <cairn/sequence/follower.hpp>
 #include <cairn/sequence/landmarks.hpp>
 
-namespace cairn::io {
+namespace cairn::output {
 
 /// A frame of tracks.jsonl (docs/formats.md): one line of JSON, with the newline.
 std::string step_json(const TrackedFrame& step, const std::string& name, const LandmarkUpdate& marked = {},
@@ -49,4 +49,4 @@ class FollowFiles {
   std::ofstream tracks_, poses_, masks_, events_;
 };
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <utility>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 /// The bounding box of a track's visible parts; empty if there are none.
@@ -153,4 +153,4 @@ void FollowPage::finish(const LandmarkMap& map) {
   file_.finish();
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -13,7 +13,7 @@
 
 /// The player: the tracks of a sequence as one self-contained page for the browser. Layout, style and script
 /// are cairn/output/web/follow.html and the files next to it. (docs/looking_at_results.md, "The player")
-namespace cairn::io {
+namespace cairn::output {
 
 /// A step as text. `facts`: its line of tracks.jsonl without masks, and the label position of each track;
 /// `maps`: the left image as JPEG, and for each pixel 0 or 1 + the index of its track in the list of `facts`,
@@ -47,7 +47,7 @@ class FollowPage {
   std::string end_;     // of the page
   std::string events_;  // JSON for the page, separated by commas
   int frames_ = 0;
-  GrowingFile file_;
+  io::GrowingFile file_;
 };
 
-}  // namespace cairn::io
+}  // namespace cairn::output

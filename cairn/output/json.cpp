@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace cairn::io {
+namespace cairn::output {
 
 std::string json_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
@@ -44,4 +44,4 @@ Json shortest(float value) {
   return nearest;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

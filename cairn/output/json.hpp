@@ -25,7 +25,7 @@ struct Tuning;
 }  // namespace cairn
 
 /// Results as JSON values; text is made where they leave the program. Internal: not installed.
-namespace cairn::io {
+namespace cairn::output {
 
 struct EncodedFrame;
 struct PageFrame;
@@ -71,4 +71,4 @@ EncodedFrame encode_frame(const PageFrame& frame, Json result);
 std::vector<Json> event_lines(const TrackedFrame& step, const std::vector<LandmarkOfTrack>& landmarks,
                               const std::vector<LandmarkEvent>& events);
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/output/json_line.hpp>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 using Json = nlohmann::json;
@@ -115,4 +115,4 @@ std::optional<Point3> JsonLine::maybe_point(const char* key) const {
   return Point3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -14,7 +14,7 @@
 #include <cairn/sequence/pose.hpp>
 
 /// Access to JSON from outside: type and range of each value are checked.
-namespace cairn::io {
+namespace cairn::output {
 
 /// nullopt if the text is not JSON. Throws Error for excessive nesting, since readers recurse.
 std::optional<nlohmann::json> parsed_json(const std::string& text);
@@ -54,4 +54,4 @@ class JsonLine {
   const nlohmann::json& object_;
 };
 
-}  // namespace cairn::io
+}  // namespace cairn::output

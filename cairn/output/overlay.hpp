@@ -12,7 +12,7 @@
 #include <vector>
 
 /// Images for viewing. Small frames are enlarged by an integer factor, so that labels stay legible.
-namespace cairn::io {
+namespace cairn::output {
 
 /// The left image, its background faded: every object tinted, outlined and labelled with its id and distance
 /// (in m; without a calibration its disparity in px), the floor (non-zero; may be empty) faintly tinted; with
@@ -60,4 +60,4 @@ DisparitySpan disparity_span(View<const float> disparity_px);
 /// The colours of the scale, lowest disparity first.
 std::array<Rgb, 256> disparity_colours();
 
-}  // namespace cairn::io
+}  // namespace cairn::output

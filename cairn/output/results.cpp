@@ -22,7 +22,7 @@
 #include <random>
 #include <system_error>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -134,7 +134,7 @@ Json option_value(const OptionInfo& option) {
 
 Json json(const Object& object, View<const ObjectId> labels) {
   const Rect box = object.box_px;
-  const Rle rle = encode_rle(labels, object.id, box);
+  const io::Rle rle = io::encode_rle(labels, object.id, box);
   Json j;
   j["id"] = number(object.id);
   j["bbox"] = {box.x, box.y, box.width, box.height};
@@ -207,7 +207,7 @@ class Ancestors {
       made_.push_back(p);
       if (p == p.parent_path()) break;
     }
-    make_folder(folder);
+    io::make_folder(folder);
   }
   Ancestors(const Ancestors&) = delete;
   Ancestors& operator=(const Ancestors&) = delete;
@@ -235,7 +235,7 @@ struct Result {
 };
 
 void write_disparity(const fs::path& path, const Result& r) {
-  save_disparity(path, r.frame.disparity.disparity_px);
+  io::save_disparity(path, r.frame.disparity.disparity_px);
 }
 
 void write_objects(const fs::path& path, const Result& r) {
@@ -251,12 +251,12 @@ void write_objects(const fs::path& path, const Result& r) {
       ids(x, y) = static_cast<std::uint16_t>(id);
     }
   }
-  save_png(path, View<const std::uint16_t>(ids));
+  io::save_png(path, View<const std::uint16_t>(ids));
 }
 
 void write_cloud(const fs::path& path, const Result& r) {
-  save_ply(path, r.left, r.left_rgb, r.frame.disparity.disparity_px, r.frame.objects.labels,
-           *r.provenance.rig);
+  io::save_ply(path, r.left, r.left_rgb, r.frame.disparity.disparity_px, r.frame.objects.labels,
+               *r.provenance.rig);
 }
 
 // ---- depth and the grid of obstacles ----
@@ -287,7 +287,7 @@ void save_depth(const fs::path& path, const Image<float>& depth) {
       return whole > 0 && whole <= 65535 ? static_cast<std::uint16_t>(whole) : std::uint16_t{0};
     });
   }
-  save_png(path, View<const std::uint16_t>(millimetres));
+  io::save_png(path, View<const std::uint16_t>(millimetres));
 }
 
 /// NumPy's format, version 1.0, for a matrix of 32-bit floats.
@@ -361,47 +361,47 @@ constexpr std::array kResultFiles{
                write_disparity},
     ResultFile{"reject.png", always,
                [](const fs::path& path, const Result& r) {
-                 save_png(path, View<const Reject>(r.frame.disparity.reject));
+                 io::save_png(path, View<const Reject>(r.frame.disparity.reject));
                }},
     ResultFile{"confidence.png", [](const Result& r) { return !r.frame.confidence.empty(); },
                [](const fs::path& path, const Result& r) { save_confidence(path, r.frame.confidence); }},
     ResultFile{"objects.png", always, write_objects},
     ResultFile{"floor.png", [](const Result& r) { return !r.frame.floor.empty(); },
                [](const fs::path& path, const Result& r) {
-                 save_png(path, View<const std::uint8_t>(r.frame.floor));
+                 io::save_png(path, View<const std::uint8_t>(r.frame.floor));
                }},
     ResultFile{"space.png", [](const Result& r) { return !r.frame.space.empty(); },
                [](const fs::path& path, const Result& r) {
-                 save_png(path, View<const ObstacleLabel>(r.frame.space));
+                 io::save_png(path, View<const ObstacleLabel>(r.frame.space));
                }},
     ResultFile{"depth.png", wants_depth,
                [](const fs::path& path, const Result& r) { save_depth(path, depth_m(r)); }},
     ResultFile{"depth.npy", wants_depth,
                [](const fs::path& path, const Result& r) {
                  const Image<float> depth = depth_m(r);
-                 write_file(path, npy_bytes(depth));
+                 io::write_file(path, npy_bytes(depth));
                }},
     ResultFile{"grid.pgm", wants_grid,
-               [](const fs::path& path, const Result& r) { write_file(path, grid_pgm(grid_of(r))); }},
+               [](const fs::path& path, const Result& r) { io::write_file(path, grid_pgm(grid_of(r))); }},
     ResultFile{"grid.yaml", wants_grid,
-               [](const fs::path& path, const Result& r) { write_file(path, grid_yaml(grid_of(r))); }},
+               [](const fs::path& path, const Result& r) { io::write_file(path, grid_yaml(grid_of(r))); }},
     ResultFile{"overlay.png", always,
                [](const fs::path& path, const Result& r) {
                  const Image<Rgb> picture = draw_objects(r.left, r.left_rgb, r.frame.objects, r.frame.floor);
-                 save_png(path, View<const Rgb>(picture));
+                 io::save_png(path, View<const Rgb>(picture));
                }},
     ResultFile{"disparity_view.png", always,
                [](const fs::path& path, const Result& r) {
                  const Image<Rgb> picture =
                      draw_disparity(r.frame.disparity, r.provenance.rig,
                                     reasons_in_force(r.provenance.config, r.provenance.external_disparity));
-                 save_png(path, View<const Rgb>(picture));
+                 io::save_png(path, View<const Rgb>(picture));
                }},
     ResultFile{"cloud.ply",
                [](const Result& r) { return r.extras.point_cloud && r.provenance.rig.has_value(); },
                write_cloud},
     ResultFile{"objects.json", always, [](const fs::path& path, const Result& r) {
-                 write_file(path, objects_json(r.frame, r.provenance));
+                 io::write_file(path, objects_json(r.frame, r.provenance));
                }}};
 
 /// The folder with one file per object.
@@ -416,8 +416,8 @@ void write_files(const fs::path& folder, const Result& result) {
     if (file.is_wanted(result)) file.write(folder / file.name, result);
   }
   if (wants_object_clouds(result)) {
-    save_object_plys(folder / kObjectClouds, result.left, result.left_rgb,
-                     result.frame.disparity.disparity_px, result.frame.objects, *result.provenance.rig);
+    io::save_object_plys(folder / kObjectClouds, result.left, result.left_rgb,
+                         result.frame.disparity.disparity_px, result.frame.objects, *result.provenance.rig);
   }
 }
 
@@ -503,8 +503,8 @@ std::string frame_row(const std::string& name, const Frame& frame, const Provena
 std::string disparity_file_name(const Frame& frame, const Provenance& provenance) {
   const bool png =
       provenance.external_disparity
-          ? png_can_hold(View<const float>(frame.disparity.disparity_px))
-          : png_can_hold(provenance.config.match.min_disparity, provenance.config.match.num_disparities);
+          ? io::png_can_hold(View<const float>(frame.disparity.disparity_px))
+          : io::png_can_hold(provenance.config.match.min_disparity, provenance.config.match.num_disparities);
   return png ? "disparity.png" : "disparity.pfm";
 }
 
@@ -514,7 +514,7 @@ void save_confidence(const fs::path& path, View<const float> confidence) {
     std::transform(confidence.row(y), confidence.row(y) + bytes.width(), bytes.row(y),
                    [](float c) { return static_cast<std::uint8_t>(std::lround(255.0F * c)); });
   }
-  save_png(path, View<const std::uint8_t>(bytes));
+  io::save_png(path, View<const std::uint8_t>(bytes));
 }
 
 void write_result(const fs::path& given_folder, View<const Gray> left, View<const Rgb> left_rgb,
@@ -571,7 +571,7 @@ ObjectId id_of(const nlohmann::json& value) {
 
 std::vector<ObjectConfidence> load_confidences(const fs::path& path) {
   constexpr std::size_t kMax = std::size_t{256} << 20;
-  const std::string text = read_file(path, kMax);
+  const std::string text = io::read_file(path, kMax);
   try {
     std::vector<ObjectConfidence> all;
     const auto whole = nlohmann::json::parse(text);
@@ -587,4 +587,4 @@ std::vector<ObjectConfidence> load_confidences(const fs::path& path) {
   }
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

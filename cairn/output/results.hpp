@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace cairn::io {
+namespace cairn::output {
 
 struct StageTime {
   std::string stage;  // as the observer names it
@@ -70,4 +70,4 @@ struct ObjectConfidence {
 };
 std::vector<ObjectConfidence> load_confidences(const std::filesystem::path& path);
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -17,7 +17,7 @@
 #include <set>
 #include <string_view>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,7 +42,7 @@ std::optional<Pose> pose_in(const JsonLine& line) {
   return pose_of(*place, *turn);
 }
 
-Rle mask_in(const JsonLine& track) {
+io::Rle mask_in(const JsonLine& track) {
   const JsonLine rle(track.at("rle"));
   const Json& size = rle.at("size");
   const auto is_side = [](const Json& side) {
@@ -163,7 +163,7 @@ bool each_json(const fs::path& path, const std::function<void(const Json&, std::
   return is_cut_off;
 }
 
-std::int64_t number_in(const std::string& word, const char* what, std::int64_t least, std::int64_t most) {
+std::int64_t io::number_in(const std::string& word, const char* what, std::int64_t least, std::int64_t most) {
   const std::string expected = std::string(what) + " is `" + word.substr(0, kMaxShown) +
                                "`, expected a whole number from " + std::to_string(least) + " to " +
                                std::to_string(most);
@@ -210,14 +210,14 @@ TrackFile load_mots(const fs::path& path) {
     const std::vector<std::string> word = words_of(text);
     if (word.size() != 6)
       throw Error("found `" + text.substr(0, kMaxShown) + "`, expected `frame id class height width rle`");
-    const std::int64_t frame = number_in(word[0], "the frame", 0, kMaxOfMots);
-    const std::int64_t id = number_in(word[1], "the id", 1, (std::int64_t{1} << 31) - 1);
-    const std::int64_t kind = number_in(word[2], "the class", 0, std::int64_t{1} << 31);
-    const auto height = static_cast<int>(number_in(word[3], "the height", 1, kMaxSide));
-    const auto width = static_cast<int>(number_in(word[4], "the width", 1, kMaxSide));
+    const std::int64_t frame = io::number_in(word[0], "the frame", 0, kMaxOfMots);
+    const std::int64_t id = io::number_in(word[1], "the id", 1, (std::int64_t{1} << 31) - 1);
+    const std::int64_t kind = io::number_in(word[2], "the class", 0, std::int64_t{1} << 31);
+    const auto height = static_cast<int>(io::number_in(word[3], "the height", 1, kMaxSide));
+    const auto width = static_cast<int>(io::number_in(word[4], "the width", 1, kMaxSide));
     TrackRecord track;
     track.id = TrackId{id};
-    track.mask = Rle{{width, height}, word[5]};
+    track.mask = io::Rle{{width, height}, word[5]};
     track.is_dont_care = kind == kIgnored;
     if (!masks[frame].emplace(id, std::move(track)).second)
       throw Error("id " + word[1] + " occurs twice in frame " + word[0]);
@@ -262,7 +262,7 @@ Image<TrackId> track_labels(const std::vector<TrackRecord>& tracks, Size size, c
       throw Error(who + ": its mask is " + text(track.mask->size) + ", expected " + text(size));
     Image<std::uint8_t> mask;
     try {
-      mask = decode_rle(*track.mask);
+      mask = io::decode_rle(*track.mask);
     } catch (const Error& error) {
       throw Error(who + ": " + error.what());
     }
@@ -278,4 +278,4 @@ Image<TrackId> track_labels(const std::vector<TrackRecord>& tracks, Size size, c
   return labels;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

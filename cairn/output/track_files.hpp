@@ -15,7 +15,7 @@
 #include <cairn/sequence/tracks.hpp>
 
 /// Reading of the output of `cairn follow`. (docs/formats.md, "A sequence's result out")
-namespace cairn::io {
+namespace cairn::output {
 
 /// A track in one frame of a tracks.jsonl.
 struct TrackRecord {
@@ -25,8 +25,8 @@ struct TrackRecord {
   std::optional<Point3> position_m;  // in the map; nullopt without a rig
   std::optional<Covariance3> covariance_m2;
   std::optional<std::int64_t> landmark;
-  std::optional<Rle> mask;    // if detected in this frame
-  bool is_dont_care = false;  // class 10 of MOTS: neither right nor wrong
+  std::optional<io::Rle> mask;  // if detected in this frame
+  bool is_dont_care = false;    // class 10 of MOTS: neither right nor wrong
 };
 
 struct TrackFrame {
@@ -69,4 +69,4 @@ std::vector<ChangeRecord> load_changes(const std::filesystem::path& path);
 /// another size, is malformed, or overlaps another.
 Image<TrackId> track_labels(const std::vector<TrackRecord>& tracks, Size size, const std::string& where);
 
-}  // namespace cairn::io
+}  // namespace cairn::output

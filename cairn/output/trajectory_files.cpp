@@ -14,7 +14,7 @@
 #include <cairn/io/text_lines.hpp>
 #include <cairn/sequence/stamps.hpp>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,9 +26,10 @@ std::array<double, n> numbers(const std::vector<std::string_view>& fields, std::
                               const fs::path& path, std::size_t line) {
   std::array<double, n> all{};
   for (std::size_t k = 0; k < n; ++k) {
-    all[k] = number_in(fields[first + k], path, line);
+    all[k] = io::number_in(fields[first + k], path, line);
     if (std::isnan(all[k]))
-      throw Error(place(path, line) + ": found " + quoted(fields[first + k]) + ", expected a finite number");
+      throw Error(io::place(path, line) + ": found " + io::quoted(fields[first + k]) +
+                  ", expected a finite number");
   }
   return all;
 }
@@ -60,13 +61,13 @@ Pose pose_of_quaternion(const std::array<double, 3>& t, const std::array<double,
 }
 
 Stamp stamp_in(std::optional<Stamp> stamp, std::string_view text, const std::string& where) {
-  if (!stamp) throw Error(where + ": found " + quoted(text) + ", expected a stamp");
+  if (!stamp) throw Error(where + ": found " + io::quoted(text) + ", expected a stamp");
   return *stamp;
 }
 
 TimedPose pose_in(const std::vector<std::string_view>& fields, TrajectoryForm form, const fs::path& path,
                   std::size_t line) {
-  const std::string where = place(path, line);
+  const std::string where = io::place(path, line);
   switch (form) {
     case TrajectoryForm::tum:
       return {
@@ -86,7 +87,7 @@ TimedPose pose_in(const std::vector<std::string_view>& fields, TrajectoryForm fo
 TrajectoryForm form_of(std::string_view line, const fs::path& path, std::size_t number) {
   constexpr std::size_t kTum = 8;
   constexpr std::size_t kKitti = 12;
-  const std::size_t fields = fields_of(line).size();
+  const std::size_t fields = io::fields_of(line).size();
   if (line.find(',') != std::string_view::npos) {
     if (fields >= kTum) return TrajectoryForm::euroc;
   } else if (fields == kTum) {
@@ -94,7 +95,7 @@ TrajectoryForm form_of(std::string_view line, const fs::path& path, std::size_t 
   } else if (fields == kKitti) {
     return TrajectoryForm::kitti;
   }
-  throw Error(place(path, number) + ": found " + std::to_string(fields) +
+  throw Error(io::place(path, number) + ": found " + std::to_string(fields) +
               " fields, expected 8 (TUM: t x y z qx qy qz qw), 12 (KITTI) or EuRoC's ns,x,y,z,qw,qx,qy,qz");
 }
 
@@ -150,13 +151,14 @@ Trajectory load_folder(const fs::path& folder) {
 }  // namespace
 
 Pose load_pose(const fs::path& path) {
-  const std::string text = read_file(path, kMaxTextBytes);
+  const std::string text = io::read_file(path, kMaxTextBytes);
   std::vector<double> values;
-  for (const TextLine& line : lines_of(text)) {
-    for (const std::string_view field : fields_of(line.text)) {
-      values.push_back(number_in(field, path, line.number));
+  for (const io::TextLine& line : io::lines_of(text)) {
+    for (const std::string_view field : io::fields_of(line.text)) {
+      values.push_back(io::number_in(field, path, line.number));
       if (std::isnan(values.back()))
-        throw Error(place(path, line.number) + ": found " + quoted(field) + ", expected a finite number");
+        throw Error(io::place(path, line.number) + ": found " + io::quoted(field) +
+                    ", expected a finite number");
     }
   }
   constexpr std::size_t kRows = 12;
@@ -174,17 +176,17 @@ Trajectory load_trajectory(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return load_folder(path);
   constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
-  const std::string text = read_file(path, kMaxBytes);
+  const std::string text = io::read_file(path, kMaxBytes);
   Trajectory all;
   std::optional<TrajectoryForm> form;
-  for (const TextLine& line : lines_of(text)) {
-    const std::vector<std::string_view> fields = fields_of(line.text);
+  for (const io::TextLine& line : io::lines_of(text)) {
+    const std::vector<std::string_view> fields = io::fields_of(line.text);
     if (!form) {
       form = form_of(line.text, path, line.number);
       // EuRoC's truth has a header of column names, which may lack the #.
       if (*form == TrajectoryForm::euroc && !parse_stamp(fields.front())) continue;
     } else if (form_of(line.text, path, line.number) != *form) {
-      throw Error(place(path, line.number) + ": differs in form from the lines before");
+      throw Error(io::place(path, line.number) + ": differs in form from the lines before");
     }
     all.poses.push_back(pose_in(fields, *form, path, line.number));
   }
@@ -198,9 +200,9 @@ Trajectory load_trajectory(const fs::path& path) {
   number_stamps(all.poses);
   if (fs::is_regular_file(times, ignored)) {
     std::vector<Stamp> stamps;
-    const std::string times_text = read_file(times, kMaxBytes);
-    for (const TextLine& line : lines_of(times_text))
-      stamps.push_back(stamp_in(parse_seconds(line.text), line.text, place(times, line.number)));
+    const std::string times_text = io::read_file(times, kMaxBytes);
+    for (const io::TextLine& line : io::lines_of(times_text))
+      stamps.push_back(stamp_in(parse_seconds(line.text), line.text, io::place(times, line.number)));
     all.has_stamps = take_stamps(all.poses, stamps);
   }
   if (all.has_stamps) check_order(all.poses, times);
@@ -237,11 +239,11 @@ std::string trajectory_text(const std::vector<TimedPose>& poses, TrajectoryForm 
     for (const double value : values) {
       if (!first) all += separator;
       first = false;
-      all += text_of("%.9g", value);
+      all += io::text_of("%.9g", value);
     }
     all += '\n';
   }
   return all;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -12,7 +12,7 @@
 
 #include <cairn/sequence/trajectory_error.hpp>
 
-namespace cairn::io {
+namespace cairn::output {
 
 /// The forms of trajectory files.
 /// tum: "t x y z qx qy qz qw", t in s. kitti: the 12 numbers of the upper rows of map_from_camera, no stamps.
@@ -39,4 +39,4 @@ Pose load_pose(const std::filesystem::path& path);
 /// The poses as the text of a file in this form, one line each.
 std::string trajectory_text(const std::vector<TimedPose>& poses, TrajectoryForm form);
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -7,7 +7,7 @@
 #include <cairn/output/json.hpp>
 #include <cmath>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 std::vector<TuningFigure> object_figures(const Measures& measures) {
@@ -125,4 +125,4 @@ std::string tuning_json(const Tuning& tuned, const std::vector<std::string>& nam
   return json_text(json_of(tuned, names, seed));
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

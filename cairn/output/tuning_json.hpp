@@ -8,7 +8,7 @@
 #include <vector>
 
 /// What `cairn tune --json` writes (docs/formats.md); Python has the same.
-namespace cairn::io {
+namespace cairn::output {
 
 using Measures = std::vector<FrameMeasure>;
 
@@ -28,4 +28,4 @@ std::vector<TuningFigure> tuning_figures(const Measures& measures, TuningGoal go
 /// An object of all that was found. `names`: of the frames.
 std::string tuning_json(const Tuning& tuned, const std::vector<std::string>& names, std::uint32_t seed);
 
-}  // namespace cairn::io
+}  // namespace cairn::output

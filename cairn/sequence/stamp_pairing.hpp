@@ -12,7 +12,7 @@
 
 #include <cairn/sequence/pose.hpp>
 
-namespace cairn::io {
+namespace cairn {
 
 /// Pairs the images of two ordered streams: mutual nearest neighbours in time, at most `max_skew_ms` apart.
 /// Sides: 0 is left, 1 is right.
@@ -107,4 +107,4 @@ class StampPairing {
   std::array<std::optional<Stamp>, 2> last_;
 };
 
-}  // namespace cairn::io
+}  // namespace cairn

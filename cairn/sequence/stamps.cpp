@@ -31,7 +31,7 @@ std::string seconds_text(Stamp stamp) {
 
 }  // namespace cairn
 
-namespace cairn::io {
+namespace cairn {
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,7 +79,7 @@ std::optional<Stamp> date(std::string_view text) {
   if (text.size() < kForm.size()) return std::nullopt;
   for (std::size_t i = 0; i < kForm.size(); ++i) {
     const bool fits =
-        kForm[i] == '0' ? is_digit(text[i]) : text[i] == kForm[i] || (kForm[i] == ' ' && text[i] == 'T');
+        kForm[i] == '0' ? io::is_digit(text[i]) : text[i] == kForm[i] || (kForm[i] == ' ' && text[i] == 'T');
     if (!fits) return std::nullopt;
   }
   const std::string_view fraction = text.substr(kForm.size());
@@ -95,8 +95,8 @@ std::optional<Stamp> date(std::string_view text) {
   return stamp_of(seconds, fraction.empty() ? 0 : fraction_ns(fraction.substr(1)));
 }
 
-[[noreturn]] void refuse(const fs::path& path, const TextLine& line, std::string_view found) {
-  throw Error(place(path, line.number) + ": found " + quoted(found) +
+[[noreturn]] void refuse(const fs::path& path, const io::TextLine& line, std::string_view found) {
+  throw Error(io::place(path, line.number) + ": found " + io::quoted(found) +
               ", expected a stamp: a whole number of ns, or s with a decimal point");
 }
 
@@ -133,15 +133,15 @@ std::string stamp_text(Stamp stamp) {
 }
 
 std::vector<Stamp> load_stamps(const fs::path& path) {
-  const std::string text = read_file(path, kMaxLogBytes);
+  const std::string text = io::read_file(path, kMaxLogBytes);
   std::vector<Stamp> stamps;
   // One line with a decimal point means that all are seconds: "5" before "5.1" is not 5 ns.
-  const std::vector<TextLine> lines = lines_of(text);
+  const std::vector<io::TextLine> lines = io::lines_of(text);
   const bool in_seconds =
-      std::ranges::all_of(lines, [](const TextLine& line) { return decimal(line.text).has_value(); }) &&
-      std::ranges::any_of(lines,
-                          [](const TextLine& line) { return line.text.find('.') != std::string_view::npos; });
-  for (const TextLine& line : lines) {
+      std::ranges::all_of(lines, [](const io::TextLine& line) { return decimal(line.text).has_value(); }) &&
+      std::ranges::any_of(
+          lines, [](const io::TextLine& line) { return line.text.find('.') != std::string_view::npos; });
+  for (const io::TextLine& line : lines) {
     const std::optional<Stamp> stamp = in_seconds ? parse_seconds(line.text) : parse_stamp(line.text);
     if (!stamp) refuse(path, line, line.text);
     stamps.push_back(*stamp);
@@ -150,14 +150,14 @@ std::vector<Stamp> load_stamps(const fs::path& path) {
 }
 
 std::vector<NamedStamp> load_named_stamps(const fs::path& path) {
-  const std::string text = read_file(path, kMaxLogBytes);
+  const std::string text = io::read_file(path, kMaxLogBytes);
   std::vector<NamedStamp> stamps;
-  for (const TextLine& line : lines_of(text)) {
-    const std::vector<std::string_view> fields = fields_of(line.text);
+  for (const io::TextLine& line : io::lines_of(text)) {
+    const std::vector<std::string_view> fields = io::fields_of(line.text);
     const std::optional<std::int64_t> ns = whole<std::int64_t>(fields.front());
     if (!ns) {
       const bool is_seconds = parse_seconds(fields.front()).has_value();
-      throw Error(place(path, line.number) + ": found " + quoted(fields.front()) +
+      throw Error(io::place(path, line.number) + ": found " + io::quoted(fields.front()) +
                   ", expected a stamp in whole ns" + (is_seconds ? "; these are s" : ""));
     }
     std::string file(fields.size() > 1 ? fields[1] : "");
@@ -168,21 +168,21 @@ std::vector<NamedStamp> load_named_stamps(const fs::path& path) {
 }
 
 std::optional<std::vector<FrameStamp>> load_frame_stamps(const fs::path& path) {
-  const std::string text = read_file(path, kMaxLogBytes);
-  const std::vector<TextLine> lines = lines_of(text);
+  const std::string text = io::read_file(path, kMaxLogBytes);
+  const std::vector<io::TextLine> lines = io::lines_of(text);
   if (lines.empty()) return std::nullopt;
-  const std::vector<std::string_view> header = fields_of(lines.front().text);
+  const std::vector<std::string_view> header = io::fields_of(lines.front().text);
   const auto time = static_cast<std::size_t>(std::find(header.begin(), header.end(), "t_s") - header.begin());
   const auto frame =
       static_cast<std::size_t>(std::find(header.begin(), header.end(), "frame") - header.begin());
   if (time == header.size()) return std::nullopt;
   std::vector<FrameStamp> stamps;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::vector<std::string_view> fields = fields_of(lines[i].text);
+    const std::vector<std::string_view> fields = io::fields_of(lines[i].text);
     const std::string_view field = time < fields.size() ? fields[time] : std::string_view{};
     const std::optional<Stamp> stamp = parse_seconds(field);
     if (!stamp)
-      throw Error(place(path, lines[i].number) + ": found " + quoted(field) + " as t_s, expected s");
+      throw Error(io::place(path, lines[i].number) + ": found " + io::quoted(field) + " as t_s, expected s");
     stamps.push_back({{}, *stamp});
     if (frame < fields.size()) stamps.back().frame = whole<std::size_t>(fields[frame]);
   }
@@ -249,4 +249,4 @@ StampPairs pair_by_stamps(std::span<const Stamp> left, std::span<const Stamp> ri
   return found;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn

@@ -13,7 +13,7 @@
 #include <cairn/sequence/pose.hpp>
 
 /// Parsing of frame stamps in text files and names. (docs/formats.md, "Stamps")
-namespace cairn::io {
+namespace cairn {
 
 /// "1403715274312143104": integers are ns. "1.036" and "1.036e-01": s. "2011-09-26 13:02:25.964389445": a
 /// date in UTC. nullopt for other text or outside the range of a Stamp.
@@ -67,4 +67,4 @@ struct StampPairs {
 /// Pairs mutual nearest neighbours at most `max_skew_ms` apart; each frame is used once. Both lists ascend.
 StampPairs pair_by_stamps(std::span<const Stamp> left, std::span<const Stamp> right, double max_skew_ms);
 
-}  // namespace cairn::io
+}  // namespace cairn

@@ -4,7 +4,7 @@
 
 #include <ctime>
 
-namespace cairn::report {
+namespace cairn::timing {
 
 /// Milliseconds of CLOCK_PROCESS_CPUTIME_ID, CLOCK_THREAD_CPUTIME_ID or CLOCK_MONOTONIC.
 inline double now_ms(clockid_t clock) {
@@ -13,4 +13,4 @@ inline double now_ms(clockid_t clock) {
   return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

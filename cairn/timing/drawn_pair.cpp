@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace cairn::report {
+namespace cairn::timing {
 namespace {
 
 /// A surface of disparity d = rise·y + level within a rectangle, in px of the left image.
@@ -218,4 +218,4 @@ DrawnPair draw_pair(Size size, float largest_disparity_px) {
   return drawn;
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 /// A synthetic pair for timing without input: the same pixels on every machine.
-namespace cairn::report {
+namespace cairn::timing {
 
 struct DrawnPair {
   Image<Gray> left;
@@ -26,4 +26,4 @@ struct DrawnPair {
 /// boxes and texture scale with the image.
 DrawnPair draw_pair(Size size, float largest_disparity_px);
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

@@ -12,7 +12,7 @@
 #include <cairn/timing/opencv_matchers.hpp>
 
 /// The time of the method, per stage and frame, next to that of other matchers.
-namespace cairn::report {
+namespace cairn::timing {
 
 /// Milliseconds, one value per frame.
 struct Samples {
@@ -61,4 +61,4 @@ struct Limits {
 FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
                        const Exec& exec, const Limits& limits, std::span<const OpenCvMatcher> matchers = {});
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

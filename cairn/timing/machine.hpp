@@ -6,7 +6,7 @@
 #include <string>
 
 /// Machine and build of a measurement, part of every report.
-namespace cairn::report {
+namespace cairn::timing {
 
 inline std::string processor() {
   std::ifstream in("/proc/cpuinfo");
@@ -28,4 +28,4 @@ inline std::string compiler() {
 #endif
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

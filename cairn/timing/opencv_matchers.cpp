@@ -11,7 +11,7 @@
 
 #include <cairn/timing/opencv_matrix.hpp>
 
-namespace cairn::report {
+namespace cairn::timing {
 
 struct ReadyMatcher::State {
   cv::Ptr<cv::StereoMatcher> matcher;
@@ -97,4 +97,4 @@ void set_opencv_threads(int threads) {
   cv::setNumThreads(threads);
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

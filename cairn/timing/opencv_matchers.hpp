@@ -11,7 +11,7 @@
 
 /// OpenCV's matchers, for comparison in the same run. A build without them has opencv_matchers_none.cpp
 /// instead: no matcher, no version.
-namespace cairn::report {
+namespace cairn::timing {
 
 /// A matcher for the frames of one camera: keeps its buffers between frames, like Segmenter.
 class ReadyMatcher {
@@ -52,4 +52,4 @@ std::string_view opencv_version();
 /// Sets the global number of OpenCV threads: call once, before timing.
 void set_opencv_threads(int threads);
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

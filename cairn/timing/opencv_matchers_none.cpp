@@ -4,7 +4,7 @@
 
 #include <cairn/timing/opencv_matchers.hpp>
 
-namespace cairn::report {
+namespace cairn::timing {
 
 // Never called, since there is no matcher.
 void ReadyMatcher::compute(const StereoPair&) const {
@@ -22,4 +22,4 @@ std::string_view opencv_version() {
 }
 void set_opencv_threads(int) {}
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

@@ -9,7 +9,7 @@
 #include <opencv2/core.hpp>
 
 /// Conversion between cairn's and OpenCV's images.
-namespace cairn::report {
+namespace cairn::timing {
 
 // OpenCV has no matrix of constant pixels; its functions only read.
 inline cv::Mat matrix(View<const Gray> image) {
@@ -37,4 +37,4 @@ inline Image<float> disparity_px_of(const cv::Mat& sixteenths, int min_disparity
   return disparity_px;
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace cairn::report {
+namespace cairn::timing {
 
 /// The smallest value that at least `share` (0 … 1) of the values do not exceed; NaN without values. Ignores
 /// NaN.
@@ -33,4 +33,4 @@ inline double mean(const std::vector<double>& values) {
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace cairn::report
+}  // namespace cairn::timing

@@ -127,8 +127,8 @@ std::vector<OptionInfo> follow_options() {
 
 // ---- following ----
 
-io::Provenance provenance(const FollowSettings& settings, const Config& config,
-                          const std::optional<StereoRig>& rig, Stamp stamp) {
+output::Provenance provenance(const FollowSettings& settings, const Config& config,
+                              const std::optional<StereoRig>& rig, Stamp stamp) {
   return {settings.segmentation.preset, config, rig, {}, false, stamp.ns};
 }
 
@@ -140,9 +140,9 @@ class PyFollower {
         calibration_(std::move(calibration)),
         follower_(settings_.suited(calibration_.calibration), calibration_.rig(), exec) {}
 
-  std::tuple<TrackedFrame, io::Provenance> next(const LoadedImage& left, const LoadedImage& right,
-                                                std::int64_t ns, const std::optional<MotionPrior>& prior,
-                                                const std::optional<Pose>& pose) {
+  std::tuple<TrackedFrame, output::Provenance> next(const LoadedImage& left, const LoadedImage& right,
+                                                    std::int64_t ns, const std::optional<MotionPrior>& prior,
+                                                    const std::optional<Pose>& pose) {
     const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
     calibration_.check(pair.size());
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
@@ -165,7 +165,7 @@ class PyFollower {
 struct FollowedFrame {
   io::LoadedImage left;
   TrackedFrame step;
-  io::Provenance how;
+  output::Provenance how;
   std::string name;
   std::string frame_id;
   std::vector<LandmarkOfTrack> marks;
@@ -176,9 +176,9 @@ struct FollowedFrame {
 /// A whole sequence.
 class SequenceIterator {
  public:
-  SequenceIterator(const std::string& source, const io::SourceOptions& options, const io::SensorFiles& files,
-                   FollowSettings settings, const Exec& exec)
-      : settings_(std::move(settings)), source_(io::open_sequence(source, options, exec.pool)) {
+  SequenceIterator(const std::string& source, const input::SourceOptions& options,
+                   const live::SensorFiles& files, FollowSettings settings, const Exec& exec)
+      : settings_(std::move(settings)), source_(input::open_sequence(source, options, exec.pool)) {
     if (!source_->rig() && (files.odometry || files.imu || files.poses || files.map)) {
       throw Error(source_->name() +
                   ": found no calibration with a baseline, expected one: the other files are "
@@ -197,7 +197,7 @@ class SequenceIterator {
       close_run(RunState::done);
       return std::nullopt;
     }
-    const io::SequenceFrame& pair = *found->pair;
+    const input::SequenceFrame& pair = *found->pair;
     FollowedFrame made{{pair.left.gray.clone(), pair.left.rgb.clone()},
                        std::move(found->step),
                        provenance(settings_, found->config->segmentation, source_->rig(), pair.stamp),
@@ -218,7 +218,7 @@ class SequenceIterator {
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
     close_run(RunState::aborted);  // before the end of the source
   }
-  [[nodiscard]] const io::Sequence& source() const { return *source_; }
+  [[nodiscard]] const input::Sequence& source() const { return *source_; }
 
  private:
   void close_run(RunState state) {
@@ -227,7 +227,7 @@ class SequenceIterator {
   }
 
   FollowSettings settings_;
-  std::unique_ptr<io::Sequence> source_;
+  std::unique_ptr<input::Sequence> source_;
   std::optional<live::Runner> run_;
   std::mutex busy_;
   bool closed_ = false;
@@ -239,13 +239,13 @@ std::unique_ptr<SequenceIterator> follow(const FollowSettings& settings, const E
                                          const std::string& layout, double rate_hz, const std::string& frames,
                                          bool rectify, const File& odometry, const File& imu,
                                          const File& poses, const File& map, bool is_read_only) {
-  io::SourceOptions options;
+  input::SourceOptions options;
   if (calib) options.calib = calib->string();
   options.layout = layout;
   options.rate_hz = rate_hz;
   options.rectify = rectify;
-  if (!frames.empty()) options.frames = io::parse_frame_range(frames);
-  const io::SensorFiles files{odometry, imu, poses, {}, map, is_read_only, {}};
+  if (!frames.empty()) options.frames = input::parse_frame_range(frames);
+  const live::SensorFiles files{odometry, imu, poses, {}, map, is_read_only, {}};
   return std::make_unique<SequenceIterator>(source, options, files, settings, exec);
 }
 
@@ -313,12 +313,12 @@ void bind_results(py::module_& m) {
     LandmarkUpdate marked;
     restore(landmarks, marked.tracks);
     const py::gil_scoped_release others_run;
-    return io::step_json(step, name, marked, frame_id);
+    return output::step_json(step, name, marked, frame_id);
   });
   m.def(
       "draw_tracks",
       [](const LoadedImage& left, const TrackedFrame& step) {
-        return io::draw_tracks(left.gray(), left.rgb(), step);
+        return output::draw_tracks(left.gray(), left.rgb(), step);
       },
       Released());
 }
@@ -352,7 +352,7 @@ void bind_follow(py::module_& m) {
       .def("ended_early", [](const SequenceIterator& self) { return self.source().ended_early(); })
       .def("remarks", [](const SequenceIterator& self) {
         std::vector<std::pair<std::string, std::size_t>> all;
-        for (const io::SourceRemark& remark : self.source().remarks())
+        for (const input::SourceRemark& remark : self.source().remarks())
           all.emplace_back(remark.what, remark.count);
         return all;
       });

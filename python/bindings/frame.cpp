@@ -18,10 +18,10 @@ namespace {
 
 /// The frame, and how it was made. `work` gets the rig, the configuration and an Exec that records times.
 template <class Work>
-std::pair<Frame, io::Provenance> timed(Size size, bool is_external, const PyCalibration& calibration,
-                                       const PyConfig& config, Exec exec, Work work) {
+std::pair<Frame, output::Provenance> timed(Size size, bool is_external, const PyCalibration& calibration,
+                                           const PyConfig& config, Exec exec, Work work) {
   calibration.check(size);
-  io::Provenance how{
+  output::Provenance how{
       config.preset, config.suited(calibration.calibration).config, calibration.rig(), {}, is_external};
   exec.observe = [&](std::string_view stage, const StageResult&, double milliseconds) {
     how.timings.push_back({std::string(stage), milliseconds});
@@ -57,7 +57,7 @@ StereoResult disparity_of_pair(const LoadedImage& left, const LoadedImage& right
 
 /// A scan or grid of what is seen from the floor.
 template <auto make>
-auto from_floor(const Frame& frame, const FloorFrame& floor, const io::Provenance& how) {
+auto from_floor(const Frame& frame, const FloorFrame& floor, const output::Provenance& how) {
   return make(frame.space, frame.disparity.disparity_px, floor, *how.rig, how.config.obstacles);
 }
 
@@ -103,11 +103,11 @@ void save_png(const std::filesystem::path& path, const py::object& image) {
 
 void bind_frame(py::module_& m) {
   value_class<Frame>(m, "FrameData");
-  auto provenance = value_class<io::Provenance>(m, "Provenance");
-  shows(provenance, "config", [](const io::Provenance& p) { return PyConfig{p.preset, p.config, true}; });
-  shows(provenance, "timings", [](const io::Provenance& p) {
+  auto provenance = value_class<output::Provenance>(m, "Provenance");
+  shows(provenance, "config", [](const output::Provenance& p) { return PyConfig{p.preset, p.config, true}; });
+  shows(provenance, "timings", [](const output::Provenance& p) {
     py::dict times;
-    for (const io::StageTime& time : p.timings) times[py::str(time.stage)] = time.milliseconds;
+    for (const output::StageTime& time : p.timings) times[py::str(time.stage)] = time.milliseconds;
     return times;
   });
   m.def("segment_pair", &segment_pair, Released());
@@ -117,16 +117,18 @@ void bind_frame(py::module_& m) {
     return Segmenter(config.suited(calibration.calibration).config, calibration.rig(), exec).exec();
   });
 
-  m.def("floor_of", [](const Frame& f, const io::Provenance& p) { return floor_frame(f.ground, p.rig); });
+  m.def("floor_of", [](const Frame& f, const output::Provenance& p) { return floor_frame(f.ground, p.rig); });
   m.def("scan", &from_floor<&scan_obstacles>);
   m.def("grid", &from_floor<&map_obstacles>);
   m.def("points_of_pixels", &points_of_pixels, Released());
   m.def("points_of_object", &points_of_object, Released());
-  m.def("to_json", &io::objects_json, Released());
+  m.def("to_json", &output::objects_json, Released());
   m.def(
       "save",
       [](const std::filesystem::path& folder, const LoadedImage& left, const Frame& frame,
-         const io::Provenance& how) { io::write_result(folder, left.gray(), left.rgb(), frame, how); },
+         const output::Provenance& how) {
+        output::write_result(folder, left.gray(), left.rgb(), frame, how);
+      },
       Released());
 
   m.def(
@@ -150,20 +152,20 @@ void bind_frame(py::module_& m) {
   m.def(
       "draw_disparity",
       [](const DisparityMap& map, const PyCalibration& calibration) {
-        return io::draw_disparity(map, calibration.rig());
+        return output::draw_disparity(map, calibration.rig());
       },
       Released());
   m.def(
       "draw_frame_disparity",
-      [](const Frame& frame, const io::Provenance& how) {
-        return io::draw_disparity(frame.disparity, how.rig,
-                                  reasons_in_force(how.config, how.external_disparity));
+      [](const Frame& frame, const output::Provenance& how) {
+        return output::draw_disparity(frame.disparity, how.rig,
+                                      reasons_in_force(how.config, how.external_disparity));
       },
       Released());
   m.def(
       "draw_objects",
       [](const LoadedImage& left, const Objects& objects, View<const std::uint8_t> floor) {
-        return io::draw_objects(left.gray(), left.rgb(), objects, floor);
+        return output::draw_objects(left.gray(), left.rgb(), objects, floor);
       },
       Released());
 }

@@ -9,8 +9,8 @@
 
 namespace cairn::python {
 
-CAIRN_MEMBERS(io::StageTime, _stage, _milliseconds)
-CAIRN_MEMBERS(io::Provenance, _preset, _config, rig, _timings, _external_disparity, _stamp_ns)
+CAIRN_MEMBERS(output::StageTime, _stage, _milliseconds)
+CAIRN_MEMBERS(output::Provenance, _preset, _config, rig, _timings, _external_disparity, _stamp_ns)
 
 }  // namespace cairn::python
 

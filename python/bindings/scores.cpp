@@ -83,13 +83,13 @@ std::vector<std::string> faults_of(const PairMeasures& measures, const PyCalibra
   const MatchConfig range = config.suited(calibration.calibration).config.match;
   std::vector<std::string> all;
   for (const Finding& finding : diagnose(measures, calibration.rig(), range, judged))
-    all.push_back(io::finding_json(finding, {}));
+    all.push_back(output::finding_json(finding, {}));
   return all;
 }
 
 std::optional<std::string> fault_of(const Synchrony& measured) {
   const auto finding = diagnose(measured);
-  return finding ? std::optional(io::finding_json(*finding, {})) : std::nullopt;
+  return finding ? std::optional(output::finding_json(*finding, {})) : std::nullopt;
 }
 
 // ---- tuning ----
@@ -190,7 +190,7 @@ std::pair<std::string, PyConfig> tuned(const std::vector<std::pair<std::string, 
   best.config = with_settings(base.config, found.settings());
   for (const Setting& setting : found.settings())
     best.range_given |= setting.option == "match.num_disparities";
-  return {io::tuning_json(found, names, seed), std::move(best)};
+  return {output::tuning_json(found, names, seed), std::move(best)};
 }
 
 }  // namespace
@@ -224,10 +224,10 @@ void bind_scores(py::module_& m) {
   shows(measures, "disparities_px",
         [](const PairMeasures& self) { return Numbers<float>{self.disparities_px}; });
   measures.def("_disparity", &PairMeasures::disparity_px);
-  measures.def("_json", &io::measures_json);
+  measures.def("_json", &output::measures_json);
   auto synchrony = value_class<Synchrony>(m, "Synchrony");
   shows(synchrony, "tells", &Synchrony::tells);
-  synchrony.def("_json", [](const Synchrony& self) { return io::synchrony_json(self, {}); });
+  synchrony.def("_json", [](const Synchrony& self) { return output::synchrony_json(self, {}); });
   m.def(
       "measure_pair",
       [](const LoadedImage& left, const LoadedImage& right, const Exec& exec) {

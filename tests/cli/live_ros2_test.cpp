@@ -56,10 +56,10 @@ void expect_same_objects(const Json& frame, const ros::Detection3DArray& heard,
 }
 
 TEST_F(LiveRos2, AnotherProcessReceivesWhatIsPrinted) {
-  const dds::Participant participant;
+  const ros::Participant participant;
   const std::string prefix = own_topic("run");
-  dds::Reader<ros::Detection3DArray> objects(participant, prefix + "/objects", {true, 1000});
-  dds::Reader<ros::String> stats(participant, prefix + "/stats", {true, 1000});
+  ros::Reader<ros::Detection3DArray> objects(participant, prefix + "/objects", {true, 1000});
+  ros::Reader<ros::String> stats(participant, prefix + "/stats", {true, 1000});
   const Outcome outcome = run(
       {"live", sequence(), "--no-tracks", "--every-frame", "--rate", "3", "--json-lines", "--ros2", prefix});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -81,7 +81,7 @@ TEST_F(LiveRos2, AnotherProcessReceivesWhatIsPrinted) {
 }
 
 TEST_F(LiveRos2, FollowPublishesToo) {
-  const dds::Participant participant;
+  const ros::Participant participant;
   const std::string prefix = own_topic("followed");
   const Outcome outcome = run({"follow", sequence(), "--ros2", prefix});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -118,19 +118,19 @@ class Camera {
     }
   }
 
-  dds::Participant participant_;
-  dds::Writer<ros::Image> left_;
-  dds::Writer<ros::Image> right_;
-  dds::Writer<ros::CameraInfo> left_info_;
-  dds::Writer<ros::CameraInfo> right_info_;
+  ros::Participant participant_;
+  ros::Writer<ros::Image> left_;
+  ros::Writer<ros::Image> right_;
+  ros::Writer<ros::CameraInfo> left_info_;
+  ros::Writer<ros::CameraInfo> right_info_;
   std::atomic<bool> is_over_ = false;
   std::thread thread_;
 };
 
 TEST_F(LiveRos2, ACameraOnTopicsIsSegmentedAsItsImagesAre) {
   const std::string prefix = own_topic("stereo");
-  const dds::Participant participant;
-  dds::Reader<ros::Detection3DArray> objects(participant, prefix + "/objects", {true, 1000});
+  const ros::Participant participant;
+  ros::Reader<ros::Detection3DArray> objects(participant, prefix + "/objects", {true, 1000});
   const Camera camera(prefix);
   const Outcome live = run({"live", "ros2:" + prefix, "--no-tracks", "--max-age", "0", "--frames", "8",
                             "--set", "match.num_disparities=32", "--json-lines", "--ros2", prefix});

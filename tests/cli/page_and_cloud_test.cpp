@@ -70,7 +70,7 @@ TEST_F(PageAndCloudTest, CloudsOfObjectsPartitionTheLabelledPointsOfTheWhole) {
     EXPECT_EQ(own.at(-1), points) << object;
   }
   const auto files = std::distance(fs::directory_iterator(at("out/objects")), fs::directory_iterator());
-  EXPECT_EQ(static_cast<std::size_t>(files), io::load_confidences(at("out/objects.json")).size());
+  EXPECT_EQ(static_cast<std::size_t>(files), output::load_confidences(at("out/objects.json")).size());
 }
 
 TEST_F(PageAndCloudTest, CloudsOfObjectsOfAnOlderResultAreRemovedAndOtherFilesStay) {

@@ -23,10 +23,10 @@ int main(int, char** argv) {
   config.match.num_disparities = calibration.num_disparities.value_or(64);
   const auto pair = cairn::StereoPair::from(images.left.gray, images.right.gray, images.left.rgb);
   const auto frame = cairn::segment(pair, calibration.rig, config, cairn::Exec::with_threads(0));
-  cairn::io::write_result(result, images.left.gray, images.left.rgb, frame,
-                          {"default", config, calibration.rig, {}, false});
+  cairn::output::write_result(result, images.left.gray, images.left.rgb, frame,
+                              {"default", config, calibration.rig, {}, false});
   std::printf("files: %zu objects, %zu bytes of options, %zu of an empty page\n", frame.objects.list.size(),
               cairn::io::config_yaml(config).size(),
-              cairn::io::html_page({"segment", "none", {}}, {}).size());
+              cairn::output::html_page({"segment", "none", {}}, {}).size());
   return frame.objects.list.empty() || !std::filesystem::exists(result / "overlay.png") ? 1 : 0;
 }

@@ -12,7 +12,7 @@
 int main(int, char** argv) {
   const std::filesystem::path map = argv[2];
   std::filesystem::remove(map);
-  const auto sequence = cairn::io::open_sequence(argv[1], {});
+  const auto sequence = cairn::input::open_sequence(argv[1], {});
   cairn::FollowConfig config;
   config.segmentation.match.num_disparities = sequence->disparities().value_or(64);
   config.landmarks.min_frames = 4;
@@ -26,7 +26,7 @@ int main(int, char** argv) {
     const auto seen = cairn::landmark_frame(step, *sequence->rig(), frame->left.gray, frame->left.rgb);
     auto marked = cairn::advance_landmarks(std::move(landmarks), seen, config.landmarks);
     file.write(seen, marked);
-    written += cairn::io::step_json(step, frame->name, marked).size();
+    written += cairn::output::step_json(step, frame->name, marked).size();
     landmarks = std::move(marked.state);
   }
   file.end_run(cairn::RunState::done, landmarks.map);

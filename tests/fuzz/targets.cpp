@@ -219,7 +219,8 @@ std::vector<std::string> configurations() {
 // ---- results ----
 
 bool objects(std::string_view bytes) {
-  return read_file_of<[](const fs::path& file) { return io::load_confidences(file); }>("objects.json", bytes);
+  return read_file_of<[](const fs::path& file) { return output::load_confidences(file); }>("objects.json",
+                                                                                           bytes);
 }
 std::vector<std::string> objects_files() {
   return {R"({"schema": "1.1", "objects": [{"id": 1, "confidence": 0.5}, {"id": 2, "confidence": 1}]})",
@@ -276,7 +277,7 @@ bool dataset(std::string_view bytes) {
   taken |= is_taken([&] { (void)io::find_pairs(place.path()); });
   taken |= is_taken([&] { (void)io::find_truth(place.path()); });
   for (const io::FrameFiles& frame : frames) (void)is_taken([&] { (void)io::find_truth(frame); });
-  taken |= is_taken([&] { (void)io::open_sequence(place.path().string(), {}); });
+  taken |= is_taken([&] { (void)input::open_sequence(place.path().string(), {}); });
   return taken;
 }
 std::vector<std::string> datasets() {
@@ -297,9 +298,9 @@ std::vector<std::string> datasets() {
 
 bool stamps(std::string_view bytes) {
   const fs::path file = written("stamps.txt", bytes);
-  bool taken = is_taken([&] { (void)io::load_stamps(file); });
-  taken |= is_taken([&] { (void)io::load_named_stamps(file); });
-  taken |= is_taken([&] { (void)io::load_frame_stamps(file); });
+  bool taken = is_taken([&] { (void)load_stamps(file); });
+  taken |= is_taken([&] { (void)load_named_stamps(file); });
+  taken |= is_taken([&] { (void)load_frame_stamps(file); });
   return taken;
 }
 std::vector<std::string> stamp_files() {
@@ -310,8 +311,8 @@ std::vector<std::string> stamp_files() {
 
 bool trajectory(std::string_view bytes) {
   const fs::path file = written("poses.txt", bytes);
-  bool taken = is_taken([&] { (void)io::load_trajectory(file); });
-  taken |= is_taken([&] { (void)io::load_pose(file); });
+  bool taken = is_taken([&] { (void)output::load_trajectory(file); });
+  taken |= is_taken([&] { (void)output::load_pose(file); });
   return taken;
 }
 std::vector<std::string> trajectories() {
@@ -323,11 +324,11 @@ std::vector<std::string> trajectories() {
 bool priors(std::string_view bytes) {
   const fs::path file = written("odometry.csv", bytes);
   bool taken = is_taken([&] {
-    const auto all = io::load_odometry(file);
+    const auto all = input::load_odometry(file);
     (void)all->between(all->first(), all->last());
   });
   taken |= is_taken([&] {
-    const auto all = io::load_imu(file);
+    const auto all = input::load_imu(file);
     (void)all->between(all->first(), all->last());
   });
   return taken;
@@ -339,7 +340,7 @@ std::vector<std::string> prior_files() {
 }
 
 bool scans(std::string_view bytes) {
-  return read_file_of<[](const fs::path& file) { return io::load_scans(file); }>("scans.csv", bytes);
+  return read_file_of<[](const fs::path& file) { return input::load_scans(file); }>("scans.csv", bytes);
 }
 std::vector<std::string> scan_files() {
   return {"t_s,angle_min,angle_increment,r0,r1,r2\n0.0,-0.1,0.1,1.0,2.0,nan\n0.1,-0.1,0.1,1.0,2.0,3.0\n"};
@@ -347,9 +348,9 @@ std::vector<std::string> scan_files() {
 
 bool tracks(std::string_view bytes) {
   const fs::path file = written("tracks.jsonl", bytes);
-  bool taken = is_taken([&] { (void)io::load_tracks(file); });
-  taken |= is_taken([&] { (void)io::load_mots(file); });
-  taken |= is_taken([&] { (void)io::load_changes(file); });
+  bool taken = is_taken([&] { (void)output::load_tracks(file); });
+  taken |= is_taken([&] { (void)output::load_mots(file); });
+  taken |= is_taken([&] { (void)output::load_changes(file); });
   return taken;
 }
 std::vector<std::string> track_lines() {
@@ -362,11 +363,11 @@ std::vector<std::string> track_lines() {
 }
 
 bool json(std::string_view bytes) {
-  return is_taken([&] { (void)io::parsed_json(std::string(bytes)); });
+  return is_taken([&] { (void)output::parsed_json(std::string(bytes)); });
 }
 
 bool frame_range(std::string_view bytes) {
-  return is_taken([&] { (void)io::parse_frame_range(bytes); });
+  return is_taken([&] { (void)input::parse_frame_range(bytes); });
 }
 
 bool map_file(std::string_view bytes) {
@@ -425,7 +426,7 @@ bool recording(std::string_view bytes) {
     ros::McapReader reader(file);
     while (reader.next()) continue;
     (void)ros::attachment_of(reader, "config.yaml");
-    (void)io::open_sequence(file.string(), {});
+    (void)input::open_sequence(file.string(), {});
   });
 }
 std::vector<std::string> recordings() {
@@ -492,7 +493,7 @@ std::vector<std::string> requests() {
 /// Requests of a viewer to set options.
 bool parameters(std::string_view bytes) {
   return is_taken([&] {
-    const std::optional<nlohmann::json> list = io::parsed_json(std::string(bytes));
+    const std::optional<nlohmann::json> list = output::parsed_json(std::string(bytes));
     if (!list) throw Error("no JSON");
     auto config = std::make_shared<FollowConfig>();
     live::ViewedRun run;

@@ -50,7 +50,7 @@ struct FakeDevice {
 };
 
 /// Devices that replay a list of events, then stay silent.
-class FakeV4l2 : public io::V4l2Ops {
+class FakeV4l2 : public input::V4l2Ops {
  public:
   std::map<std::string, FakeDevice> devices;
   int opened = 0;

@@ -216,7 +216,7 @@ TEST(EncodeWithoutMemory, JpegEndsInBadAlloc) {
 
 struct Made {
   Image<Gray> left = noise<Gray>(kSize);
-  io::Provenance provenance;
+  output::Provenance provenance;
   Frame frame;
 };
 
@@ -266,8 +266,8 @@ int fail_each_write(const char* name, const std::function<void(const fs::path&)>
 TEST(WriteWithoutMemory, AFolderOfResultsIsCompleteOrAbsent) {
   EXPECT_GT(fail_each_write("result",
                             [](const fs::path& path) {
-                              io::write_result(path, made().left, {}, made().frame, made().provenance,
-                                               {true, true, true, true});
+                              output::write_result(path, made().left, {}, made().frame, made().provenance,
+                                                   {true, true, true, true});
                             }),
             100);
 }
@@ -283,18 +283,20 @@ TEST(WriteWithoutMemory, DisparitiesCloudsAndPagesAreCompleteOrAbsent) {
                                            *made().provenance.rig);
                             }),
             3);
-  EXPECT_GT(fail_each({[] {
-                         io::PageFrame page;
-                         page.left = made().left;
-                         page.disparity_px = made().frame.disparity.disparity_px;
-                         page.reject = made().frame.disparity.reject;
-                         page.objects = made().frame.objects.labels;
-                         page.objects_json = io::objects_json(made().frame, made().provenance);
-                         return !io::html_page({"segment", "a title", {}}, {io::encode_frame(page)}).empty();
-                       },
-                       {},
-                       true}),
-            20);
+  EXPECT_GT(
+      fail_each(
+          {[] {
+             output::PageFrame page;
+             page.left = made().left;
+             page.disparity_px = made().frame.disparity.disparity_px;
+             page.reject = made().frame.disparity.reject;
+             page.objects = made().frame.objects.labels;
+             page.objects_json = output::objects_json(made().frame, made().provenance);
+             return !output::html_page({"segment", "a title", {}}, {output::encode_frame(page)}).empty();
+           },
+           {},
+           true}),
+      20);
   EXPECT_GT(fail_each({[] { return !io::config_yaml(Config{}).empty(); }}), 20);
 }
 

@@ -15,12 +15,12 @@
 
 /// The interface to a device or a pipeline; reconnection and image handling are common to all. Internal to
 /// source.
-namespace cairn::io {
+namespace cairn::input {
 
 struct CameraImage {
-  LoadedImage left;   // or the only image
-  Image<Gray> right;  // empty for a camera with one image only
-  Stamp stamp;        // by the steady clock
+  io::LoadedImage left;  // or the only image
+  Image<Gray> right;     // empty for a camera with one image only
+  Stamp stamp;           // by the steady clock
   std::chrono::steady_clock::time_point arrived;
   std::uint64_t dropped = 0;  // frames lost since the image before, if the camera reports them
   bool is_after_gap = false;  // the first image after the camera was lost
@@ -46,4 +46,4 @@ class Camera {
 /// Opens the camera, also again after a loss. Throws Error with the reason, in one line.
 using CameraMaker = std::function<std::unique_ptr<Camera>()>;
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -17,7 +17,7 @@
 #include <cairn/input/frame_watch.hpp>
 #include <cairn/io/names_and_numbers.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 using namespace std::chrono_literals;
@@ -63,7 +63,7 @@ class CameraSequence : public SourceSequence {
 
   std::optional<SequenceFrame> next() override {
     std::optional<SequenceFrame> frame = SourceSequence::next();
-    note_losses(frame ? frame->name : number_text(count_));
+    note_losses(frame ? frame->name : io::number_text(count_));
     if (is_stopped_) return std::nullopt;
     return frame;
   }
@@ -232,15 +232,16 @@ class CameraSequence : public SourceSequence {
     }
     is_after_gap_ = is_after_gap_ || image.is_after_gap;
     if (last_stamp_ && image.stamp <= *last_stamp_) {
-      remark(remarks_, {"frame with a stamp that is not later than the one before", 1, number_text(count_),
-                        true, false});
+      remark(remarks_, {"frame with a stamp that is not later than the one before", 1,
+                        io::number_text(count_), true, false});
       return std::nullopt;
     }
     const std::size_t index = count_++;
     if (!options_.frames.contains(index)) return std::nullopt;
     last_stamp_ = image.stamp;
-    LoadedPair pair = calibration_.rectified({std::move(image.left), {std::move(image.right), {}}, 8}, pool_);
-    SequenceFrame frame{number_text(index),         index, image.stamp,  std::move(pair.left),
+    io::LoadedPair pair =
+        calibration_.rectified({std::move(image.left), {std::move(image.right), {}}, 8}, pool_);
+    SequenceFrame frame{io::number_text(index),     index, image.stamp,  std::move(pair.left),
                         std::move(pair.right.gray), false, image.arrived};
     watch_.see(frame, names_.source, remarks_);
     frame.after_gap = frame.after_gap || std::exchange(is_after_gap_, false);
@@ -262,7 +263,7 @@ class CameraSequence : public SourceSequence {
     note("left image without a right one", unpaired[0], "before " + before);
     note("right image without a left one", unpaired[1], "before " + before);
     if (now.reconnects > 0) note_once("was lost and came back", text_of_times(now.reconnects));
-    if (pairs > 0) note_once("the two cameras are not synchronised", text_of(skew));
+    if (pairs > 0) note_once("the two cameras are not synchronised", io::text_of(skew));
     if (has_ended_) note_once("the pipeline ended", "after " + std::to_string(count_) + " frames");
   }
 
@@ -295,7 +296,7 @@ class CameraSequence : public SourceSequence {
     return times == 1 ? "once" : std::to_string(times) + " times";
   }
 
-  static std::string text_of(const StampPairer::Skew& skew) {
+  static std::string io::text_of(const StampPairer::Skew& skew) {
     std::string words =
         formatted("right images are %.1f to %.1f ms later than left ones", skew.least_ms, skew.most_ms);
     if (skew.drift_over_s >= kMinDriftSeconds) words += formatted(", drift %.0f ppm", skew.drift_ppm);
@@ -330,4 +331,4 @@ std::unique_ptr<Sequence> camera_sequence(CameraNames names, std::vector<CameraM
   return std::make_unique<CameraSequence>(std::move(names), std::move(cameras), options, pool, times);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -10,7 +10,7 @@
 #include <cairn/input/camera/kept_camera.hpp>
 #include <cairn/input/sequence.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 
 /// The names of a camera source.
 struct CameraNames {
@@ -25,4 +25,4 @@ std::unique_ptr<Sequence> camera_sequence(CameraNames names, std::vector<CameraM
                                           const SourceOptions& options, const Pool& pool,
                                           CameraTimes times = {});
 
-}  // namespace cairn::io
+}  // namespace cairn::input

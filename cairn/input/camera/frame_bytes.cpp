@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 const std::uint8_t* row_of(const Samples& samples, int y) {
@@ -173,11 +173,11 @@ TwoFrames halves_of(const FrameBytes& bytes, Layout layout) {
   return {part_of(bytes, 0, 0, size), part_of(bytes, 0, half, size)};
 }
 
-LoadedImage picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool) {
-  LoadedImage picture;
+io::LoadedImage picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool) {
+  io::LoadedImage picture;
   if (bytes.kind == FrameBytes::Kind::rgb) {
     picture.rgb = colours_of_rgb(bytes, pool);
-    picture.gray = grey_of(picture.rgb.view(), pool);
+    picture.gray = io::grey_of(picture.rgb.view(), pool);
     if (!with_colour) picture.rgb = {};
     return picture;
   }
@@ -186,4 +186,4 @@ LoadedImage picture_of(const FrameBytes& bytes, bool with_colour, const Pool& po
   return picture;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -10,7 +10,7 @@
 #include <cairn/io/image_files.hpp>
 
 /// Images in the memory layout of cameras, and their conversion. Internal to source.
-namespace cairn::io {
+namespace cairn::input {
 
 /// One channel: the sample of pixel (x, y) is at data[(y >> shift_y) * row + (x >> shift_x) * step].
 struct Samples {
@@ -59,6 +59,6 @@ TwoFrames halves_of(const FrameBytes& bytes, Layout layout);
 
 /// Grey: the unchanged grey or luminance samples, of colours as in grey_of(). With colour if `with_colour`
 /// and the frame has any.
-LoadedImage picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool);
+io::LoadedImage picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

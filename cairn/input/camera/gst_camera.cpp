@@ -15,7 +15,7 @@
 
 #include <cairn/input/camera/without_password.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -274,4 +274,4 @@ std::unique_ptr<Camera> make_gst_camera(const GstRequest& request) {
   return std::make_unique<GstCamera>(request);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

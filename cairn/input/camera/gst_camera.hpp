@@ -9,7 +9,7 @@
 #include <cairn/input/camera/frame_bytes.hpp>
 
 /// GStreamer pipelines, through a module (camera/gst_module.cpp). Internal to source.
-namespace cairn::io {
+namespace cairn::input {
 
 struct GstRequest {
   std::string pipeline;  // for gst-launch-1.0, without the sink
@@ -29,4 +29,4 @@ inline constexpr const char* kGstEntry = "cairn_open_gst";
 /// The function of that name in the module: the caller owns the result. Throws Error.
 using GstEntry = Camera* (*)(const GstRequest&);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

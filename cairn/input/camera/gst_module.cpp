@@ -9,9 +9,9 @@ __attribute__((visibility("default"))) const char* cairn_module_version() {
   return CAIRN_VERSION;
 }
 
-__attribute__((visibility("default"))) cairn::io::Camera* cairn_open_gst(
-    const cairn::io::GstRequest& request) {
-  return cairn::io::make_gst_camera(request).release();
+__attribute__((visibility("default"))) cairn::input::Camera* cairn_open_gst(
+    const cairn::input::GstRequest& request) {
+  return cairn::input::make_gst_camera(request).release();
 }
 
 }  // extern "C"

@@ -6,7 +6,7 @@
 #include <cairn/core/error.hpp>
 #include <utility>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 using namespace std::chrono_literals;
@@ -114,4 +114,4 @@ void KeptCamera::wait(std::chrono::milliseconds time) const {
     std::this_thread::sleep_until(std::min(end, Clock::now() + kNotice));
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -13,7 +13,7 @@
 
 #include <cairn/input/camera/camera.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 
 /// The time limits after which a camera counts as lost, and the delay before it is opened again.
 struct CameraTimes {
@@ -68,4 +68,4 @@ class KeptCamera {
   std::thread thread_;
 };
 
-}  // namespace cairn::io
+}  // namespace cairn::input

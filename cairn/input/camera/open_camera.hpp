@@ -12,7 +12,7 @@
 #include <cairn/input/sequence.hpp>
 
 /// Camera sources by name. (docs/cameras.md) Internal to source.
-namespace cairn::io {
+namespace cairn::input {
 
 /// "v4l2:", "gst:", "rtsp://" and "rtsps://".
 bool is_camera(std::string_view source);
@@ -27,4 +27,4 @@ std::vector<V4l2Request> parse_v4l2(const std::string& source, const SourceOptio
 std::unique_ptr<Sequence> open_v4l2_sequence(const std::string& source, const SourceOptions& options,
                                              const Pool& pool, V4l2Ops& ops, CameraTimes times = {});
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -3,10 +3,10 @@
 #include <cairn/input/camera/gst_camera.hpp>
 
 /// Linked directly, without a module: sanitizers need one program.
-namespace cairn::io {
+namespace cairn::input {
 
 std::unique_ptr<Camera> open_gst(const GstRequest& request) {
   return make_gst_camera(request);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -4,7 +4,7 @@
 
 #include <cairn/input/camera/gst_camera.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 
 std::unique_ptr<Camera> open_gst(const GstRequest&) {
   throw Error(
@@ -12,4 +12,4 @@ std::unique_ptr<Camera> open_gst(const GstRequest&) {
       "libgstreamer-plugins-base1.0-dev); v4l2:/dev/video0 can be read");
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

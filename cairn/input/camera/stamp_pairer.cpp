@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 /// Images of one side kept waiting for the other: a quarter of a second at 30 Hz.
@@ -61,4 +61,4 @@ StampPairer::Skew StampPairer::skew() const {
   return skew;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

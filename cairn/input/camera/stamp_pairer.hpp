@@ -9,7 +9,7 @@
 #include <cairn/input/camera/camera.hpp>
 #include <cairn/sequence/stamp_pairing.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 
 /// Pairs the images of two cameras by nearest stamp as they arrive. Not thread-safe.
 class StampPairer {
@@ -56,4 +56,4 @@ class StampPairer {
   } line_;
 };
 
-}  // namespace cairn::io
+}  // namespace cairn::input

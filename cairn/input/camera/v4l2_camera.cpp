@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -339,9 +339,9 @@ class V4l2Camera : public Camera {
   }
 
   std::optional<CameraImage> image_of_jpeg(std::span<const std::uint8_t> bytes) {
-    Raster raster;
+    io::Raster raster;
     try {
-      raster = decode_jpeg({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+      raster = io::decode_jpeg({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     } catch (const Error&) {
       return std::nullopt;
     }
@@ -393,4 +393,4 @@ std::unique_ptr<Camera> open_v4l2(const V4l2Request& request, V4l2Ops& ops, cons
   return std::make_unique<V4l2Camera>(request, ops, pool);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

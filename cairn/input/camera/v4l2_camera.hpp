@@ -9,7 +9,7 @@
 #include <cairn/input/camera/frame_bytes.hpp>
 #include <cairn/input/camera/v4l2_ops.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 
 /// The settings requested of a device; 0 or empty: its own.
 struct V4l2Request {
@@ -27,4 +27,4 @@ struct V4l2Request {
 /// must outlive it.
 std::unique_ptr<Camera> open_v4l2(const V4l2Request& request, V4l2Ops& ops, const Pool& pool);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

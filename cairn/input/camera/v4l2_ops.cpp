@@ -10,7 +10,7 @@
 
 #include <cerrno>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 class System : public V4l2Ops {
@@ -42,4 +42,4 @@ V4l2Ops& system_v4l2() {
   return system;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

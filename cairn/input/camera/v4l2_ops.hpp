@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cairn::io {
+namespace cairn::input {
 
 /// The system calls of V4L2, replaceable in tests. Like the calls of these names: -1 and errno on failure.
 class V4l2Ops {
@@ -28,4 +28,4 @@ class V4l2Ops {
 /// The operating system.
 V4l2Ops& system_v4l2();
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/input/camera/without_password.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 
 std::string without_password(std::string text) {
   std::size_t from = 0;
@@ -25,4 +25,4 @@ std::string without_password(std::string text) {
   return text;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -4,9 +4,9 @@
 
 #include <string>
 
-namespace cairn::io {
+namespace cairn::input {
 
 /// Hides name and password in messages and files: "rtsp://***@host/".
 std::string without_password(std::string text);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

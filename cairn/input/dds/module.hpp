@@ -8,7 +8,7 @@
 #include <cairn/io/load_module.hpp>
 
 /// The interface between the libraries and the module for ROS 2 topics. All belong to one build.
-namespace cairn::dds {
+namespace cairn::input {
 
 /// `entry`: the function wanted from the module.
 constexpr io::ModuleNames dds_module(const char* entry) {
@@ -18,11 +18,11 @@ constexpr io::ModuleNames dds_module(const char* entry) {
 
 struct Ros2Request {
   std::string source;
-  io::SourceOptions options;
+  SourceOptions options;
   Pool pool;
 };
 inline constexpr const char* kRos2Entry = "cairn_open_ros2";
 /// The function of that name: the caller owns the result. Throws Error.
-using Ros2Entry = io::Sequence* (*)(const Ros2Request&);
+using Ros2Entry = Sequence* (*)(const Ros2Request&);
 
-}  // namespace cairn::dds
+}  // namespace cairn::input

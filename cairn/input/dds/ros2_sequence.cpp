@@ -18,7 +18,7 @@
 #include <cairn/ros/from_step.hpp>
 #include <cairn/sequence/stamp_pairing.hpp>
 
-namespace cairn::dds {
+namespace cairn::input {
 namespace {
 
 using namespace std::chrono_literals;
@@ -39,33 +39,34 @@ std::string seconds_of(double seconds) {
   return words.data();
 }
 
-class Ros2Sequence : public io::SourceSequence {
+class Ros2Sequence : public SourceSequence {
  public:
-  Ros2Sequence(std::string source, const io::SourceOptions& options, Pool pool)
+  Ros2Sequence(std::string source, const SourceOptions& options, Pool pool)
       : SourceSequence(options.max_gap_s),
         source_(std::move(source)),
         prefix_(prefix_of(source_)),
         options_(options),
         pool_(std::move(pool)),
         topics_{topic("left"), topic("right")},
-        images_{Reader<ros::Image>(participant_, topics_[0]), Reader<ros::Image>(participant_, topics_[1])},
-        infos_{Reader<ros::CameraInfo>(participant_, prefix_ + "/left/camera_info"),
-               Reader<ros::CameraInfo>(participant_, prefix_ + "/right/camera_info")},
+        images_{ros::Reader<ros::Image>(participant_, topics_[0]),
+                ros::Reader<ros::Image>(participant_, topics_[1])},
+        infos_{ros::Reader<ros::CameraInfo>(participant_, prefix_ + "/left/camera_info"),
+               ros::Reader<ros::CameraInfo>(participant_, prefix_ + "/right/camera_info")},
         wait_(participant_, {&images_[0], &images_[1]}),
         pairing_(options.max_skew_ms, [this](std::size_t, auto&&) { ++unpaired_; }) {
-    calibration_ = io::open_calibration(options, std::nullopt, false, false);
+    calibration_ = open_calibration(options, std::nullopt, false, false);
     first_ = opened();
   }
 
-  std::optional<io::SequenceFrame> next() override {
-    std::optional<io::SequenceFrame> frame = SourceSequence::next();
+  std::optional<SequenceFrame> next() override {
+    std::optional<SequenceFrame> frame = SourceSequence::next();
     note_losses(frame ? frame->name : io::number_text(count_));
     if (is_stopped_) return std::nullopt;
     return frame;
   }
 
   [[nodiscard]] std::optional<std::size_t> size() const override {
-    const io::FrameRange& range = options_.frames;
+    const FrameRange& range = options_.frames;
     if (!range.last_excluded) return std::nullopt;
     return range.count_of(*range.last_excluded);
   }
@@ -75,8 +76,8 @@ class Ros2Sequence : public io::SourceSequence {
   /// next() polls every 50 ms, so this calls no DDS function and is safe in a signal handler.
   void stop() override { is_stopped_ = true; }
 
-  [[nodiscard]] io::SourceStatus status() const override {
-    io::SourceStatus status;
+  [[nodiscard]] SourceStatus status() const override {
+    SourceStatus status;
     status.is_live = true;
     status.clock = "source";
     status.dropped = lost();
@@ -93,22 +94,22 @@ class Ros2Sequence : public io::SourceSequence {
     ros::Image image;
     Clock::time_point arrived;
   };
-  using Pairing = io::StampPairing<ReceivedImage>;
+  using Pairing = StampPairing<ReceivedImage>;
   using Pair = Pairing::Pair;
 
   static constexpr std::size_t kMaxWaiting = 4;  // images of one side waiting for the other
 
   static std::string prefix_of(const std::string& source) {
     const std::string name = source.substr(kPrefix.size());
-    return name.empty() || name == "/" ? "" : checked_name(name, "SOURCE " + source);
+    return name.empty() || name == "/" ? "" : ros::checked_name(name, "SOURCE " + source);
   }
   [[nodiscard]] std::string topic(const char* side) const {
     return prefix_ + "/" + side + (options_.rectify ? "/image_raw" : "/image_rect");
   }
   [[nodiscard]] std::uint64_t lost() const { return images_[0].lost() + images_[1].lost(); }
 
-  std::optional<io::SequenceFrame> advance() override {
-    std::optional<io::SequenceFrame> frame;
+  std::optional<SequenceFrame> advance() override {
+    std::optional<SequenceFrame> frame;
     while (!is_stopped_ && !frame && !options_.frames.is_past(count_)) {
       if (const auto pair = taken()) {
         frame = frame_of(*pair);
@@ -138,8 +139,8 @@ class Ros2Sequence : public io::SourceSequence {
           return pair;
         } catch (const Error& error) {
           is_idle = false;
-          io::remark(remarks_, {"message that is not an image", 1,
-                                "on " + topics_[side] + " (" + error.what() + ")", true, false});
+          remark(remarks_, {"message that is not an image", 1,
+                            "on " + topics_[side] + " (" + error.what() + ")", true, false});
         }
       }
       if (is_idle) return std::nullopt;
@@ -154,7 +155,7 @@ class Ros2Sequence : public io::SourceSequence {
   }
 
   /// The first frame. Throws Error.
-  io::SequenceFrame opened() {
+  SequenceFrame opened() {
     const Clock::time_point deadline =
         Clock::now() +
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.open_timeout_s));
@@ -169,7 +170,7 @@ class Ros2Sequence : public io::SourceSequence {
       const bool has_infos = !needs_infos || take_infos();
       if (pair && (has_infos || Clock::now() - *since > kInfoWait)) {
         calibrate(*pair, needs_infos);
-        if (std::optional<io::SequenceFrame> frame = frame_of(*pair)) return std::move(*frame);
+        if (std::optional<SequenceFrame> frame = frame_of(*pair)) return std::move(*frame);
         pair.reset();
       }
       if (!pair && Clock::now() > deadline) throw Error(source_ + ": " + why_none());
@@ -229,21 +230,21 @@ class Ros2Sequence : public io::SourceSequence {
   }
 
   /// nullopt if it is outside the range, or not later than the previous one.
-  std::optional<io::SequenceFrame> frame_of(const Pair& pair) {
+  std::optional<SequenceFrame> frame_of(const Pair& pair) {
     const Stamp stamp = ros::stamp_of(pair.left.value.image.header.stamp);
     if (last_stamp_ && stamp <= *last_stamp_) {
-      io::remark(remarks_, {"frame with a stamp that is not later than the one before", 1,
-                            io::number_text(count_), true, false});
+      remark(remarks_, {"frame with a stamp that is not later than the one before", 1,
+                        io::number_text(count_), true, false});
       return std::nullopt;
     }
     const std::size_t index = count_++;
     if (!options_.frames.contains(index)) return std::nullopt;
     last_stamp_ = stamp;
     io::LoadedPair images =
-        io::pictures_of(pair.left.value.image, topics_[0], pair.right.value.image, topics_[1], bits_, pool_);
+        pictures_of(pair.left.value.image, topics_[0], pair.right.value.image, topics_[1], bits_, pool_);
     bits_ = images.bits;
     images = calibration_.rectified(std::move(images), pool_);
-    io::SequenceFrame frame{
+    SequenceFrame frame{
         io::number_text(index),
         index,
         stamp,
@@ -265,7 +266,7 @@ class Ros2Sequence : public io::SourceSequence {
   void note(const char* what, std::uint64_t count, const std::string& before) {
     if (count == 0) return;
     const auto known = std::find_if(remarks_.begin(), remarks_.end(),
-                                    [&](const io::SourceRemark& other) { return other.what == what; });
+                                    [&](const SourceRemark& other) { return other.what == what; });
     if (known == remarks_.end()) {
       remarks_.push_back({what, count, "before " + before, true, false});
     } else {
@@ -275,13 +276,13 @@ class Ros2Sequence : public io::SourceSequence {
 
   std::string source_;
   std::string prefix_;
-  io::SourceOptions options_;
+  SourceOptions options_;
   Pool pool_;
   std::array<std::string, 2> topics_;
-  Participant participant_;
-  std::array<Reader<ros::Image>, 2> images_;
-  std::array<Reader<ros::CameraInfo>, 2> infos_;
-  ReaderWait wait_;
+  ros::Participant participant_;
+  std::array<ros::Reader<ros::Image>, 2> images_;
+  std::array<ros::Reader<ros::CameraInfo>, 2> infos_;
+  ros::ReaderWait wait_;
   Pairing pairing_;
   std::array<std::optional<ros::CameraInfo>, 2> last_infos_;
   std::array<bool, 2> has_come_{};
@@ -295,9 +296,9 @@ class Ros2Sequence : public io::SourceSequence {
 
 }  // namespace
 
-std::unique_ptr<io::Sequence> ros2_sequence(const std::string& source, const io::SourceOptions& options,
-                                            const Pool& pool) {
+std::unique_ptr<Sequence> ros2_sequence(const std::string& source, const SourceOptions& options,
+                                        const Pool& pool) {
   return std::make_unique<Ros2Sequence>(source, options, pool);
 }
 
-}  // namespace cairn::dds
+}  // namespace cairn::input

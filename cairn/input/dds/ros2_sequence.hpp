@@ -7,13 +7,13 @@
 
 #include <cairn/input/sequence.hpp>
 
-namespace cairn::dds {
+namespace cairn::input {
 
 /// "ros2:/stereo": /stereo/left/image_rect and /stereo/right/image_rect, with the rig of
 /// /stereo/left/camera_info and /stereo/right/camera_info unless options.calib is given; with options.rectify
 /// the topics are image_raw. Waits for the first pair. Throws Error if none arrives within
 /// options.open_timeout_s.
-std::unique_ptr<io::Sequence> ros2_sequence(const std::string& source, const io::SourceOptions& options,
-                                            const Pool& pool);
+std::unique_ptr<Sequence> ros2_sequence(const std::string& source, const SourceOptions& options,
+                                        const Pool& pool);
 
-}  // namespace cairn::dds
+}  // namespace cairn::input

@@ -10,11 +10,11 @@ __attribute__((visibility("default"))) const char* cairn_module_version() {
   return CAIRN_VERSION;
 }
 
-__attribute__((visibility("default"))) cairn::io::Sequence* cairn_open_video(
-    const cairn::io::VideoRequest& request) {
+__attribute__((visibility("default"))) cairn::input::Sequence* cairn_open_video(
+    const cairn::input::VideoRequest& request) {
   return (request.right
-              ? cairn::io::opencv_videos(request.left, *request.right, request.options, request.pool)
-              : cairn::io::opencv_video(request.left, request.options, request.pool))
+              ? cairn::input::opencv_videos(request.left, *request.right, request.options, request.pool)
+              : cairn::input::opencv_video(request.left, request.options, request.pool))
       .release();
 }
 

@@ -8,7 +8,7 @@
 #include <cairn/input/sequence.hpp>
 
 /// The interface between the library and its video module. Both belong to one build.
-namespace cairn::io {
+namespace cairn::input {
 
 struct VideoRequest {
   std::filesystem::path left;
@@ -20,4 +20,4 @@ inline constexpr const char* kVideoEntry = "cairn_open_video";
 /// The function of that name: the caller owns the result. Throws Error.
 using VideoEntry = Sequence* (*)(const VideoRequest&);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

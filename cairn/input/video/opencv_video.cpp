@@ -18,7 +18,7 @@
 #include <opencv2/videoio/registry.hpp>
 #include <system_error>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,9 +110,9 @@ class VideoFile {
   double longest_step_s_ = 0;
 };
 
-LoadedImage picture_of(const cv::Mat& image, bool is_grey, const Pool& pool) {
+io::LoadedImage picture_of(const cv::Mat& image, bool is_grey, const Pool& pool) {
   const Size size{image.cols, image.rows};
-  LoadedImage picture;
+  io::LoadedImage picture;
   if (is_grey || image.channels() == 1) {
     picture.gray = Image<Gray>(size, pool);
     const int step = image.channels();
@@ -129,7 +129,7 @@ LoadedImage picture_of(const cv::Mat& image, bool is_grey, const Pool& pool) {
     Rgb* to = picture.rgb.row(y);
     for (int x = 0; x < size.width; ++x) to[x] = {from[3 * x + 2], from[3 * x + 1], from[3 * x]};
   }
-  picture.gray = grey_of(picture.rgb.view(), pool);
+  picture.gray = io::grey_of(picture.rgb.view(), pool);
   return picture;
 }
 
@@ -139,7 +139,7 @@ class VideoSequence : public SourceSequence {
   VideoSequence(std::string name, const fs::path& beside, const SourceOptions& options, Pool pool)
       : SourceSequence(options.max_gap_s), name_(std::move(name)), options_(options), pool_(std::move(pool)) {
     const std::optional<fs::path> found =
-        calibration_in(beside.parent_path().empty() ? "." : beside.parent_path());
+        io::calibration_in(beside.parent_path().empty() ? "." : beside.parent_path());
     calibration_ = open_calibration(options, found, false, false);
   }
 
@@ -153,7 +153,7 @@ class VideoSequence : public SourceSequence {
   struct NextFrame {
     std::size_t index = 0;
     Stamp stamp;
-    std::optional<LoadedPair> pair;  // nullopt if it cannot be decoded
+    std::optional<io::LoadedPair> pair;  // nullopt if it cannot be decoded
   };
   virtual std::optional<NextFrame> next_pair() = 0;
 
@@ -176,12 +176,12 @@ class VideoSequence : public SourceSequence {
  private:
   std::optional<SequenceFrame> advance() override {
     while (std::optional<NextFrame> both = next_pair()) {
-      const std::string name = number_text(both->index);
+      const std::string name = io::number_text(both->index);
       if (!both->pair) {
         remark_on({"frame that cannot be read", 1, name, true, true});
         continue;
       }
-      LoadedPair pair = calibration_.rectified(std::move(*both->pair), pool_);
+      io::LoadedPair pair = calibration_.rectified(std::move(*both->pair), pool_);
       SequenceFrame frame{name, both->index, both->stamp, std::move(pair.left), std::move(pair.right.gray),
                           false};
       watch_.see(frame, file_.string(), remarks_);
@@ -220,7 +220,7 @@ class OneVideo : public VideoSequence {
     return std::nullopt;
   }
 
-  [[nodiscard]] LoadedPair halves(const cv::Mat& image) {
+  [[nodiscard]] io::LoadedPair halves(const cv::Mat& image) {
     const bool side_by_side = options().layout == "side_by_side";
     const int length = side_by_side ? image.cols : image.rows;
     if (length % 2 != 0) {
@@ -246,7 +246,7 @@ class TwoVideos : public VideoSequence {
         videos_{VideoFile(left, options.rate_hz), VideoFile(right, options.rate_hz)},
         pairing_(options.max_skew_ms, [this](std::size_t side, Pairing::WaitingItem&& alone) {
           remark_on({side == 0 ? "left image without a right one" : "right image without a left one", 1,
-                     number_text(alone.value.index), true, false});
+                     io::number_text(alone.value.index), true, false});
         }) {
     begin(left);
   }
@@ -278,7 +278,8 @@ class TwoVideos : public VideoSequence {
       const std::size_t index = pairs_++;
       if (options().frames.is_past(index)) return std::nullopt;
       if (options().frames.contains(index))
-        return NextFrame{index, pair->left.stamp, pair_of(pair->left.value.image, pair->right.value.image)};
+        return NextFrame{index, pair->left.stamp,
+                         io::pair_of(pair->left.value.image, pair->right.value.image)};
     }
     // The rest of the longer one has no counterpart.
     pairing_.leave_all(reading_on);
@@ -287,15 +288,16 @@ class TwoVideos : public VideoSequence {
     return std::nullopt;
   }
 
-  std::optional<LoadedPair> pair_of(const std::optional<cv::Mat>& left, const std::optional<cv::Mat>& right) {
+  std::optional<io::LoadedPair> io::pair_of(const std::optional<cv::Mat>& left,
+                                            const std::optional<cv::Mat>& right) {
     if (!left || !right) return std::nullopt;
     if (left->size() != right->size()) {
       throw Error(videos_[1].path().string() + ": is " + text(Size{right->cols, right->rows}) +
                   ", expected " + text(Size{left->cols, left->rows}) + " as " + videos_[0].path().string() +
                   " is");
     }
-    return LoadedPair{picture_of(*left, videos_[0].is_grey(), pool()),
-                      picture_of(*right, videos_[1].is_grey(), pool()), 8};
+    return io::LoadedPair{picture_of(*left, videos_[0].is_grey(), pool()),
+                          picture_of(*right, videos_[1].is_grey(), pool()), 8};
   }
 
   std::array<VideoFile, 2> videos_;
@@ -314,4 +316,4 @@ std::unique_ptr<Sequence> opencv_videos(const fs::path& left, const fs::path& ri
   return std::make_unique<TwoVideos>(left, right, options, pool);
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -8,7 +8,7 @@
 #include <cairn/input/sequence.hpp>
 
 /// Videos through OpenCV's videoio.
-namespace cairn::io {
+namespace cairn::input {
 
 /// See open_video() and open_videos().
 std::unique_ptr<Sequence> opencv_video(const std::filesystem::path& file, const SourceOptions& options,
@@ -16,4 +16,4 @@ std::unique_ptr<Sequence> opencv_video(const std::filesystem::path& file, const 
 std::unique_ptr<Sequence> opencv_videos(const std::filesystem::path& left, const std::filesystem::path& right,
                                         const SourceOptions& options, const Pool& pool);
 
-}  // namespace cairn::io
+}  // namespace cairn::input

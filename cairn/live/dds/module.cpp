@@ -11,14 +11,14 @@ __attribute__((visibility("default"))) const char* cairn_module_version() {
   return CAIRN_VERSION;
 }
 
-__attribute__((visibility("default"))) cairn::io::Sequence* cairn_open_ros2(
-    const cairn::dds::Ros2Request& request) {
-  return cairn::dds::ros2_sequence(request.source, request.options, request.pool).release();
+__attribute__((visibility("default"))) cairn::input::Sequence* cairn_open_ros2(
+    const cairn::input::Ros2Request& request) {
+  return cairn::input::ros2_sequence(request.source, request.options, request.pool).release();
 }
 
 __attribute__((visibility("default"))) cairn::live::Sink* cairn_publish_ros2(
     const cairn::live::Ros2Options& options, const std::optional<cairn::StereoRig>& rig) {
-  return cairn::dds::ros2_sink(options, rig).release();
+  return cairn::live::ros2_sink(options, rig).release();
 }
 
 }  // extern "C"

@@ -5,10 +5,10 @@
 #include <cairn/input/dds/module.hpp>
 #include <cairn/live/ros2.hpp>
 
-namespace cairn::dds {
+namespace cairn::live {
 
 inline constexpr const char* kRos2SinkEntry = "cairn_publish_ros2";
 /// The function of that name: the caller owns the result. Throws Error.
-using Ros2SinkEntry = live::Sink* (*)(const live::Ros2Options&, const std::optional<StereoRig>&);
+using Ros2SinkEntry = Sink* (*)(const Ros2Options&, const std::optional<StereoRig>&);
 
-}  // namespace cairn::dds
+}  // namespace cairn::live

@@ -11,7 +11,7 @@
 #include <cairn/live/topics.hpp>
 #include <cairn/ros/dds/participant.hpp>
 
-namespace cairn::dds {
+namespace cairn::live {
 namespace {
 
 using namespace std::chrono_literals;
@@ -22,13 +22,13 @@ constexpr auto kLastWords = 1s;
 /// A topic and its counters.
 class Publisher {
  public:
-  Publisher(const Participant& participant, const live::Topic& topic, const std::string& name_space)
+  Publisher(const ros::Participant& participant, const Topic& topic, const std::string& name_space)
       : topic_(topic), name_(full_name(topic, name_space)), writer_(participant, name_, topic.type) {}
 
   /// Makes the message only if there are readers.
-  void publish(const live::LiveFrame& frame, const live::MessageForm& form) {
+  void publish(const LiveFrame& frame, const MessageForm& form) {
     if (!writer_.has_reader()) return;
-    const live::MessagePtr message = message_of(topic_, frame, form);
+    const MessagePtr message = message_of(topic_, frame, form);
     if (!message) return;
     if (writer_.write(*message)) {
       ++sent_;
@@ -48,27 +48,27 @@ class Publisher {
   }
 
  private:
-  const live::Topic& topic_;
+  const Topic& topic_;
   std::string name_;
-  BytesWriter writer_;
+  ros::BytesWriter writer_;
   std::uint64_t sent_ = 0;
   std::uint64_t blocked_ = 0;
 };
 
-class Ros2Sink : public live::Sink {
+class Ros2Sink : public Sink {
  public:
-  Ros2Sink(const live::Ros2Options& options, const std::optional<StereoRig>& rig)
+  Ros2Sink(const Ros2Options& options, const std::optional<StereoRig>& rig)
       : form_{.rig = rig,
               .camera_frame = options.camera_frame,
               .marks_holes_as_ros = options.marks_holes_as_ros} {
-    const std::string name_space = checked_name(options.name_space, "--ros2");
-    for (const live::Topic* topic : topics_by(&live::Topic::published))
+    const std::string name_space = ros::checked_name(options.name_space, "--ros2");
+    for (const Topic* topic : topics_by(&Topic::published))
       publishers_.emplace_back(participant_, *topic, name_space);
     thread_ = std::thread([this] { work(); });
   }
   ~Ros2Sink() override { end(); }
 
-  void offer(const live::LiveFramePtr& frame) override { slot_.put(frame); }
+  void offer(const LiveFramePtr& frame) override { slot_.put(frame); }
 
   void finish() override {
     end();
@@ -110,18 +110,18 @@ class Ros2Sink : public live::Sink {
     }
   }
 
-  live::MessageForm form_;
-  Participant participant_;
+  MessageForm form_;
+  ros::Participant participant_;
   std::deque<Publisher> publishers_;
-  live::NewestSlot<live::LiveFramePtr> slot_;
+  NewestSlot<LiveFramePtr> slot_;
   std::string trouble_;
   std::thread thread_;  // runs work()
 };
 
 }  // namespace
 
-std::unique_ptr<live::Sink> ros2_sink(const live::Ros2Options& options, const std::optional<StereoRig>& rig) {
+std::unique_ptr<Sink> ros2_sink(const Ros2Options& options, const std::optional<StereoRig>& rig) {
   return std::make_unique<Ros2Sink>(options, rig);
 }
 
-}  // namespace cairn::dds
+}  // namespace cairn::live

@@ -7,9 +7,9 @@
 
 #include <cairn/live/ros2.hpp>
 
-namespace cairn::dds {
+namespace cairn::live {
 
-/// Like live::publish_ros2().
-std::unique_ptr<live::Sink> ros2_sink(const live::Ros2Options& options, const std::optional<StereoRig>& rig);
+/// Like publish_ros2().
+std::unique_ptr<Sink> ros2_sink(const Ros2Options& options, const std::optional<StereoRig>& rig);
 
-}  // namespace cairn::dds
+}  // namespace cairn::live

@@ -58,7 +58,7 @@ struct ViewState {
   bool is_recording = false;
   bool is_file = false;  // a source that can be paused
   bool is_paused = false;
-  std::optional<io::SourceStatus> source;  // now; nullopt: as of the frame
+  std::optional<input::SourceStatus> source;  // now; nullopt: as of the frame
 };
 
 /// Without a payload if the frame lacks the data. Throws Error if a message cannot hold the stamp of the frame, or

@@ -36,7 +36,7 @@ Json advertisement() {
 /// The list for a key, up to a sensible length.
 const nlohmann::json& list_of(const nlohmann::json& message, const char* key) {
   constexpr std::size_t kMax = 1000;
-  const io::JsonLine line(message);
+  const output::JsonLine line(message);
   const nlohmann::json& list = line.at(key);
   if (!list.is_array() || list.size() > kMax) line.refuse(key, "a list of at most 1000");
   return list;
@@ -45,7 +45,7 @@ const nlohmann::json& list_of(const nlohmann::json& message, const char* key) {
 std::set<std::string> names_in(const nlohmann::json& message) {
   std::set<std::string> names;
   for (const nlohmann::json& name : list_of(message, "parameterNames")) {
-    if (!name.is_string()) throw Error("`parameterNames` holds " + io::shown(name) + ", expected texts");
+    if (!name.is_string()) throw Error("`parameterNames` holds " + output::shown(name) + ", expected texts");
     names.insert(name.get<std::string>());
   }
   return names;
@@ -80,12 +80,12 @@ Client::Client(Parameters& parameters, const std::string& name, const std::strin
        {"supportedEncodings", Json::array({"cdr", "json"})},
        {"metadata", {{"cairn", CAIRN_VERSION}}},
        {"sessionId", session}});
-  static const std::string advertised = io::json_text(advertisement());
+  static const std::string advertised = output::json_text(advertisement());
   texts_.push_back(advertised);
 }
 
 void Client::say(const Json& message) {
-  texts_.push_back(io::json_text(message));
+  texts_.push_back(output::json_text(message));
 }
 
 void Client::complain(const std::string& what) {
@@ -98,7 +98,7 @@ void Client::on_binary() {
 
 void Client::on_text(const std::string& text) {
   try {
-    const auto message = io::parsed_json(text);
+    const auto message = output::parsed_json(text);
     if (!message) throw Error("found text that is not JSON, expected {\"op\": …}");
     handle(*message);
   } catch (const std::exception& error) {  // a recorder may throw other exceptions than Error
@@ -107,18 +107,18 @@ void Client::on_text(const std::string& text) {
 }
 
 void Client::handle(const nlohmann::json& message) {
-  const std::string op = io::JsonLine(message).text("op");
+  const std::string op = output::JsonLine(message).text("op");
   if (op == "subscribe") return subscribe(list_of(message, "subscriptions"));
   if (op == "unsubscribe") return unsubscribe(list_of(message, "subscriptionIds"));
   if (op == "subscribeParameterUpdates") return watch(message, true);
   if (op == "unsubscribeParameterUpdates") return watch(message, false);
   if (op != "getParameters" && op != "setParameters") {
     throw Error(
-        "op: found " + io::shown(op) +
+        "op: found " + output::shown(op) +
         ", expected subscribe, unsubscribe, getParameters, setParameters, subscribeParameterUpdates or "
         "unsubscribeParameterUpdates");
   }
-  const io::JsonLine line(message);
+  const output::JsonLine line(message);
   const bool has_id = !line.at("id").is_null();
   std::set<std::string> names;
   bool wants_answer = true;
@@ -148,7 +148,7 @@ void Client::handle(const nlohmann::json& message) {
 
 void Client::subscribe(const nlohmann::json& list) {
   for (const nlohmann::json& each : list) {
-    const io::JsonLine line(each);
+    const output::JsonLine line(each);
     const std::int64_t id = line.integer("id", 0, kMaxId);
     const std::int64_t channel = line.integer("channelId", 1, static_cast<std::int64_t>(kChannels));
     const Channel wanted = channel_at(static_cast<std::size_t>(channel - 1));
@@ -168,7 +168,8 @@ void Client::unsubscribe(const nlohmann::json& list) {
     const auto gone = std::erase_if(subscriptions_, [&](const auto& each) {
       return id.is_number_integer() && id.get<std::int64_t>() == std::int64_t{each.second.id};
     });
-    if (gone == 0) complain("unsubscribe: found " + io::shown(id) + ", expected the id of a subscription");
+    if (gone == 0)
+      complain("unsubscribe: found " + output::shown(id) + ", expected the id of a subscription");
   }
 }
 
@@ -225,7 +226,7 @@ std::optional<Outgoing> Client::next() {
   }
   if (!to_tell_.empty()) {
     // Sends current values, as they may have changed several times meanwhile.
-    out.text = io::json_text(
+    out.text = output::json_text(
         {{"op", "parameterValues"}, {"parameters", parameters_.values(std::exchange(to_tell_, {}))}});
     return out;
   }

@@ -15,11 +15,11 @@
 namespace cairn::live {
 namespace {
 
-using io::Json;
+using output::Json;
 
 /// With the seven significant digits of a float.
 Json json(double value) {
-  return io::significant(value, 7);
+  return output::significant(value, 7);
 }
 Json json(Vec3 v) {
   return Json::array({json(v.x), json(v.y), json(v.z)});
@@ -150,7 +150,7 @@ Json ground_json(const Ground& ground, const std::optional<FloorFrame>& floor) {
   return j;
 }
 
-Json source_json(const io::SourceStatus& source) {
+Json source_json(const input::SourceStatus& source) {
   return {{"is_live", source.is_live},   {"is_connected", source.is_connected}, {"dropped", source.dropped},
           {"unpaired", source.unpaired}, {"reconnects", source.reconnects},     {"trouble", source.trouble},
           {"clock", source.clock}};
@@ -172,7 +172,7 @@ Json image_json(const LiveFrame& frame) {
 
 Json colour_json(std::int64_t id, double opacity) {
   constexpr std::int64_t kColours = 1000;  // the number of different colours of object_colour()
-  const Rgb c = io::object_colour(ObjectId{static_cast<std::int32_t>(id % kColours)});
+  const Rgb c = output::object_colour(ObjectId{static_cast<std::int32_t>(id % kColours)});
   return {{"r", json(c.r / 255.0)}, {"g", json(c.g / 255.0)}, {"b", json(c.b / 255.0)}, {"a", opacity}};
 }
 
@@ -235,42 +235,42 @@ std::string stats_json(const LiveFrame& frame, const std::optional<StereoRig>& r
   const TrackedFrame& step = frame.step;
   const auto floor = floor_frame(step.frame.ground, rig);
   Json stages = Json::array();
-  for (const io::StageTime& stage : frame.stages)
+  for (const output::StageTime& stage : frame.stages)
     stages.push_back({{"stage", stage.stage}, {"ms", json(stage.milliseconds)}});
   Json objects = Json::array();
   for (const ShownObject& shown : shown_objects(step)) objects.push_back(object_json(shown, floor));
-  return io::json_text({{"frame", step.index},
-                        {"name", frame.pair->name},
-                        {"stamp_ns", step.stamp.ns},
-                        {"rate_hz", json(frame.rate_hz)},
-                        {"latency_ms", json(ms_between(frame.arrived, frame.done))},
-                        {"stages", stages},
-                        {"drops",
-                         {{"at_source", frame.drops.at_source},
-                          {"replaced", frame.drops.replaced},
-                          {"too_old", frame.drops.too_old}}},
-                        {"source", source_json(state.source.value_or(frame.source))},
-                        {"revision", frame.revision},
-                        {"clients", state.clients},
-                        {"skipped", state.skipped},
-                        {"num_disparities", frame.config->segmentation.match.num_disparities},
-                        {"min_disparity", frame.config->segmentation.match.min_disparity},
-                        {"image", image_json(frame)},
-                        {"rig", rig_json(rig)},
-                        {"ground", ground_json(step.frame.ground, floor)},
-                        {"tunable", state.is_tunable},
-                        {"can_record", state.can_record},
-                        {"recording", state.is_recording},
-                        {"is_file", state.is_file},
-                        {"paused", state.is_paused},
-                        {"objects", objects},
-                        {"camera", camera_json(step, rig)}});
+  return output::json_text({{"frame", step.index},
+                            {"name", frame.pair->name},
+                            {"stamp_ns", step.stamp.ns},
+                            {"rate_hz", json(frame.rate_hz)},
+                            {"latency_ms", json(ms_between(frame.arrived, frame.done))},
+                            {"stages", stages},
+                            {"drops",
+                             {{"at_source", frame.drops.at_source},
+                              {"replaced", frame.drops.replaced},
+                              {"too_old", frame.drops.too_old}}},
+                            {"source", source_json(state.source.value_or(frame.source))},
+                            {"revision", frame.revision},
+                            {"clients", state.clients},
+                            {"skipped", state.skipped},
+                            {"num_disparities", frame.config->segmentation.match.num_disparities},
+                            {"min_disparity", frame.config->segmentation.match.min_disparity},
+                            {"image", image_json(frame)},
+                            {"rig", rig_json(rig)},
+                            {"ground", ground_json(step.frame.ground, floor)},
+                            {"tunable", state.is_tunable},
+                            {"can_record", state.can_record},
+                            {"recording", state.is_recording},
+                            {"is_file", state.is_file},
+                            {"paused", state.is_paused},
+                            {"objects", objects},
+                            {"camera", camera_json(step, rig)}});
 }
 
 std::string stats_json(const ViewState& state) {
-  return io::json_text({{"frame", nullptr},
-                        {"clients", state.clients},
-                        {"source", source_json(state.source.value_or(io::SourceStatus{}))}});
+  return output::json_text({{"frame", nullptr},
+                            {"clients", state.clients},
+                            {"source", source_json(state.source.value_or(input::SourceStatus{}))}});
 }
 
 std::string scene_json(const LiveFrame& frame, const std::optional<StereoRig>& rig) {
@@ -285,7 +285,7 @@ std::string scene_json(const LiveFrame& frame, const std::optional<StereoRig>& r
   }
   // Deletes all entities of the previous frame; those still present are sent again.
   const Json deletion{{"timestamp", stamp}, {"type", 1}, {"id", ""}};
-  return io::json_text({{"deletions", Json::array({deletion})}, {"entities", entities}});
+  return output::json_text({{"deletions", Json::array({deletion})}, {"entities", entities}});
 }
 
 const std::string_view kStatsSchema = R"({

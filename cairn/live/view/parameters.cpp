@@ -34,7 +34,7 @@ Json json_value(const OptionInfo& option) {
 }
 
 [[noreturn]] void refuse(const std::string& name, const nlohmann::json& found, const std::string& expected) {
-  throw Error("option " + name + ": found " + io::shown(found) + ", expected " + expected);
+  throw Error("option " + name + ": found " + output::shown(found) + ", expected " + expected);
 }
 
 /// The value as text for set(). JavaScript has one number type: 3.0 is an integer.
@@ -103,17 +103,17 @@ bool Parameters::has(const std::string& name) const {
 
 void Parameters::set(const nlohmann::json& list) {
   if (!list.is_array())
-    throw Error("setParameters: found " + io::shown(list) + ", expected a list of parameters");
+    throw Error("setParameters: found " + output::shown(list) + ", expected a list of parameters");
   if (!is_tunable_) throw Error("setParameters: this view is read-only; expected cairn live --tunable");
   const std::vector<OptionInfo> known = options();
   std::vector<std::pair<std::string, std::string>> texts;
   std::vector<std::pair<std::string, nlohmann::json>> switches;
   for (const nlohmann::json& parameter : list) {
-    const io::JsonLine line(parameter);
+    const output::JsonLine line(parameter);
     const std::string name = line.text("name");
     const nlohmann::json& value = line.at("value");
     if (name.starts_with("live.")) {
-      if (!has(name)) throw Error("parameter " + io::shown(name) + ": is not an option of this run");
+      if (!has(name)) throw Error("parameter " + output::shown(name) + ": is not an option of this run");
       if (!value.is_boolean()) refuse(name, value, "true or false");
       switches.emplace_back(name, value);
       continue;
@@ -122,7 +122,7 @@ void Parameters::set(const nlohmann::json& list) {
     if (option == known.end()) {
       FollowConfig any;
       cairn::set(any, name.substr(0, 80), "");  // its error names the similar or the new option
-      throw Error("option " + io::shown(name) + ": unknown option");
+      throw Error("option " + output::shown(name) + ": unknown option");
     }
     texts.emplace_back(name, value.is_null() ? first_.at(name) : text_of(*option, value));
   }
@@ -167,7 +167,7 @@ std::string Parameters::options_json() const {
                    {"active", option.active},
                    {"first", std::move(first)}});
   }
-  return io::json_text(all) + "\n";
+  return output::json_text(all) + "\n";
 }
 
 std::string Parameters::config_yaml() const {

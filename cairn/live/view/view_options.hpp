@@ -23,7 +23,7 @@ struct ViewedRun {
   Size image;
   std::optional<StereoRig> rig;
   /// The present status of the source: a camera without frames cannot report it in a frame.
-  std::function<io::SourceStatus()> source;
+  std::function<input::SourceStatus()> source;
   std::function<std::shared_ptr<const FollowConfig>()> config;  // of the next frame
   /// Like Runner::set().
   std::function<void(const std::vector<std::pair<std::string, std::string>>&)> set;

@@ -321,7 +321,7 @@ class ViewServer::Hub {
 
   Response page(std::string_view host) {
     const std::string nonce = random_token();
-    Response response = answer("text/html; charset=utf-8", io::live_page(nonce));
+    Response response = answer("text/html; charset=utf-8", output::live_page(nonce));
     // In older browsers 'self' does not include WebSockets. The host is one of ours: Access has checked it.
     response.set("Content-Security-Policy",
                  "default-src 'none'; script-src 'nonce-" + nonce + "'; style-src 'nonce-" + nonce +

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <map>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 // ---- maps ----
@@ -143,4 +143,4 @@ std::string html_page(const PageHead& head, const std::vector<EncodedFrame>& fra
   return page += shell.after;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

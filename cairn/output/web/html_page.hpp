@@ -12,7 +12,7 @@
 
 /// The results of a run as one self-contained page for the browser: no network, no other file. Style, script
 /// and layout are the files next to this one.
-namespace cairn::io {
+namespace cairn::output {
 
 /// The contents of the page for one frame. Any view may be empty: its parts are then left out; the others
 /// have one size.
@@ -52,4 +52,4 @@ struct PageHead {
 /// The HTML of the page, with the frames in order.
 std::string html_page(const PageHead& head, const std::vector<EncodedFrame>& frames);
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -6,7 +6,7 @@
 
 /// The layouts, styles and scripts of the pages, built into the program; internal to the pages. A layout has
 /// the places {{title}}, {{style}}, {{data}} and {{script}}, and live.html {{nonce}}.
-namespace cairn::io {
+namespace cairn::output {
 
 extern const std::string_view kSharedStyle;   // shared.css, before each page's own
 extern const std::string_view kSharedScript;  // shared.js, before each page's own
@@ -21,4 +21,4 @@ extern const std::string_view kLiveStyle;     // live.css
 extern const std::string_view kLiveScene;     // live_scene.js, before live.js
 extern const std::string_view kLiveScript;    // live.js
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -4,7 +4,7 @@
 #include <cairn/output/web/live_page.hpp>
 #include <cairn/output/web/page_parts.hpp>
 
-namespace cairn::io {
+namespace cairn::output {
 
 std::string live_page(const std::string& nonce) {
   const nlohmann::ordered_json run{{"command", "live"}, {"cairn", CAIRN_VERSION}, {"look", look()}};
@@ -13,4 +13,4 @@ std::string live_page(const std::string& nonce) {
   return shell.before + script_block("run", for_script(run)) + shell.after;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

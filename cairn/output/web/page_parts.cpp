@@ -12,7 +12,7 @@
 #include <map>
 #include <new>
 
-namespace cairn::io {
+namespace cairn::output {
 
 using Json = nlohmann::ordered_json;
 
@@ -101,13 +101,13 @@ Json packed(const std::vector<std::uint32_t>& values) {
 
 std::string picture_as_uri(View<const Gray> grey, View<const Rgb> colour) {
   if (grey.empty() && colour.empty()) return {};
-  PixelRows rows;
+  io::PixelRows rows;
   if (colour.empty()) {
     rows = {grey.size(), 1, 1, grey.data(), grey.stride()};
   } else {
     rows = {colour.size(), 3, 1, reinterpret_cast<const std::uint8_t*>(colour.data()), colour.stride() * 3};
   }
-  const std::string file = encode_jpeg(rows);
+  const std::string file = io::encode_jpeg(rows);
   return "data:image/jpeg;base64," + base64(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
 }
 
@@ -159,4 +159,4 @@ PageShell page_shell(std::string_view layout, std::string_view style, std::strin
   return shell;
 }
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -11,7 +11,7 @@
 
 /// The parts of pages: data as JSON blocks, packed images, and the layout around them. Internal to the
 /// writers of pages.
-namespace cairn::io {
+namespace cairn::output {
 
 /// JSON for use inside of <script>, with "</script" and "<!--" escaped. Invalid UTF-8 in names is replaced.
 std::string for_script(const nlohmann::ordered_json& json);
@@ -57,4 +57,4 @@ struct PageShell {
 PageShell page_shell(std::string_view layout, std::string_view style, std::string_view script,
                      std::string_view title, std::string_view nonce = {});
 
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -9,19 +9,19 @@
 #include <cstdio>
 #include <new>
 
-namespace cairn::dds {
+namespace cairn::ros {
 namespace {
 
 struct CdrType : ddsi_sertype {};
 
 /// Padded to a multiple of four bytes, as in RTPS; `size` excludes the padding.
 struct CdrData : ddsi_serdata {
-  CdrData(const ddsi_sertype* cdr_type, ddsi_serdata_kind data_kind, ros::Bytes value)
+  CdrData(const ddsi_sertype* cdr_type, ddsi_serdata_kind data_kind, Bytes value)
       : ddsi_serdata{}, bytes(std::move(value)), length(bytes.size()) {
     ddsi_serdata_init(this, cdr_type, data_kind);
     bytes.resize((length + 3) / 4 * 4);
   }
-  ros::Bytes bytes;
+  Bytes bytes;
   std::size_t length = 0;
 };
 
@@ -32,7 +32,7 @@ const CdrData& own(const ddsi_serdata* data) {
 /// No exception may cross Cyclone's C code: nullptr if memory runs out.
 CdrData* make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) noexcept {
   try {
-    return new CdrData(type, kind, ros::Bytes(size));
+    return new CdrData(type, kind, Bytes(size));
   } catch (const std::bad_alloc&) {
     return nullptr;
   }
@@ -84,7 +84,7 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) {
 /// A sample consists of the serialised bytes.
 ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
   if (kind != SDK_DATA) return make(type, kind, 4);
-  const auto& bytes = *static_cast<const ros::Bytes*>(sample);
+  const auto& bytes = *static_cast<const Bytes*>(sample);
   CdrData* const data = make(type, kind, bytes.size());
   if (data != nullptr) std::copy(bytes.begin(), bytes.end(), data->bytes.begin());
   return data;
@@ -108,8 +108,8 @@ void give_back_bytes(ddsi_serdata* data, const ddsrt_iovec_t*) {
 bool to_sample(const ddsi_serdata* data, void* sample, void**, void*) {
   const CdrData& from = own(data);
   try {
-    static_cast<ros::Bytes*>(sample)->assign(from.bytes.begin(),
-                                             from.bytes.begin() + static_cast<std::ptrdiff_t>(from.length));
+    static_cast<Bytes*>(sample)->assign(from.bytes.begin(),
+                                        from.bytes.begin() + static_cast<std::ptrdiff_t>(from.length));
     return true;
   } catch (const std::bad_alloc&) {
     return false;
@@ -123,7 +123,7 @@ ddsi_serdata* to_untyped(const ddsi_serdata* data) {
 }
 
 bool untyped_to_sample(const ddsi_sertype*, const ddsi_serdata*, void* sample, void**, void*) {
-  static_cast<ros::Bytes*>(sample)->clear();
+  static_cast<Bytes*>(sample)->clear();
   return true;
 }
 
@@ -201,7 +201,7 @@ ddsi_sertype* make_cdr_type(const std::string& name) {
   return type.release();
 }
 
-ddsi_serdata* make_cdr_data(const ddsi_sertype* type, ros::Bytes bytes) {
+ddsi_serdata* make_cdr_data(const ddsi_sertype* type, Bytes bytes) {
   return new CdrData(type, SDK_DATA, std::move(bytes));
 }
 
@@ -209,4 +209,4 @@ std::span<const std::uint8_t> bytes_of(const ddsi_serdata* data) {
   return {own(data).bytes.data(), own(data).length};
 }
 
-}  // namespace cairn::dds
+}  // namespace cairn::ros

@@ -13,7 +13,7 @@
 
 #include <cairn/ros/dds/cdr_type.hpp>
 
-namespace cairn::dds {
+namespace cairn::ros {
 namespace {
 
 /// Larger domains have no ports (7400 + 250 · domain).
@@ -202,7 +202,7 @@ bool BytesWriter::has_reader() const {
          status.current_count > 0;
 }
 
-bool BytesWriter::write(ros::Bytes message) {
+bool BytesWriter::write(Bytes message) {
   return dds_writecdr(writer_.handle(), make_cdr_data(static_cast<const ddsi_sertype*>(type_),
                                                       std::move(message))) == DDS_RETCODE_OK;
 }
@@ -222,7 +222,7 @@ BytesReader::BytesReader(const Participant& participant, const std::string& topi
   topic_ = std::move(made.entity);
 }
 
-std::optional<ros::Bytes> BytesReader::take() {
+std::optional<Bytes> BytesReader::take() {
   while (true) {
     ddsi_serdata* data = nullptr;
     dds_sample_info_t info{};
@@ -231,7 +231,7 @@ std::optional<ros::Bytes> BytesReader::take() {
     const std::unique_ptr<ddsi_serdata, decltype(&ddsi_serdata_unref)> owned(data, &ddsi_serdata_unref);
     if (!info.valid_data) continue;  // a writer disappeared
     const auto bytes = bytes_of(data);
-    return ros::Bytes(bytes.begin(), bytes.end());
+    return Bytes(bytes.begin(), bytes.end());
   }
 }
 
@@ -262,4 +262,4 @@ bool ReaderWait::wait(std::chrono::nanoseconds timeout) const {
   return dds_waitset_wait(waitset_.handle(), nullptr, 0, timeout.count()) > 0;
 }
 
-}  // namespace cairn::dds
+}  // namespace cairn::ros

@@ -16,7 +16,7 @@
 #include <cairn/ros/cdr.hpp>
 
 /// ROS 2 topics through Cyclone DDS, without any part of ROS. (docs/ros2.md)
-namespace cairn::dds {
+namespace cairn::ros {
 
 /// An owning handle of Cyclone (dds_entity_t).
 class Entity {
@@ -76,7 +76,7 @@ class BytesWriter {
   /// Whether there is a subscriber, in this process or another.
   [[nodiscard]] bool has_reader() const;
   /// False if readers were too slow to accept it for 0.1 s.
-  bool write(ros::Bytes message);
+  bool write(Bytes message);
   /// Waits until all readers have received everything written; false on timeout.
   bool wait_for_readers(std::chrono::nanoseconds timeout) const;
 
@@ -98,7 +98,7 @@ class BytesReader {
   BytesReader(const Participant& participant, const std::string& topic, std::string_view ros_type,
               ReaderQos qos = {});
   /// The next message; nullopt if there is none now.
-  std::optional<ros::Bytes> take();
+  std::optional<Bytes> take();
   /// Messages that were sent but not received, or replaced before they were taken.
   [[nodiscard]] std::uint64_t lost() const;
   [[nodiscard]] bool has_writer() const;
@@ -121,25 +121,25 @@ class ReaderWait {
   Entity waitset_;
 };
 
-template <ros::Message M>
+template <Message M>
 class Writer : public BytesWriter {
  public:
   Writer(const Participant& participant, const std::string& topic)
       : BytesWriter(participant, topic, M::kType) {}
-  bool write(const M& message) { return BytesWriter::write(ros::encode(message)); }
+  bool write(const M& message) { return BytesWriter::write(encode(message)); }
 };
 
-template <ros::Message M>
+template <Message M>
 class Reader : public BytesReader {
  public:
   Reader(const Participant& participant, const std::string& topic, ReaderQos qos = {})
       : BytesReader(participant, topic, M::kType, qos) {}
   /// Throws Error if the bytes are not such a message.
   std::optional<M> take() {
-    const std::optional<ros::Bytes> bytes = BytesReader::take();
+    const std::optional<Bytes> bytes = BytesReader::take();
     if (!bytes) return std::nullopt;
-    return ros::decode<M>(*bytes);
+    return decode<M>(*bytes);
   }
 };
 
-}  // namespace cairn::dds
+}  // namespace cairn::ros

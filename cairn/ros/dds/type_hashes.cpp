@@ -5,7 +5,7 @@
 
 #include <cairn/ros/dds/participant.hpp>
 
-namespace cairn::dds {
+namespace cairn::ros {
 namespace {
 
 /// tests/unit/ros/dds_test.cpp derives them from the members of the messages.
@@ -32,4 +32,4 @@ std::string_view type_hash(std::string_view ros_type) {
   return {};
 }
 
-}  // namespace cairn::dds
+}  // namespace cairn::ros

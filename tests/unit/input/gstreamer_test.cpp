@@ -10,7 +10,7 @@
 #include <support/temporary_folder.hpp>
 
 /// Cameras by GStreamer, with real pipelines.
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 using namespace std::chrono_literals;
@@ -49,9 +49,9 @@ class Pipelines : public testing::Test {
         }
       }
       if (colour) {
-        save_png(folder_.path() / name, rgb.view());
+        io::save_png(folder_.path() / name, rgb.view());
       } else {
-        save_png(folder_.path() / name, gray.view());
+        io::save_png(folder_.path() / name, gray.view());
       }
     }
   }
@@ -80,8 +80,8 @@ TEST_F(Pipelines, GiveTheGreyLevelsOfTheirFiles) {
     EXPECT_EQ(source->image_size(), (Size{160, 120}));
     const auto pair = source->next();
     ASSERT_TRUE(pair);
-    const LoadedImage left = load_picture(file("left.png"));
-    const LoadedImage right = load_picture(file("right.png"));
+    const io::LoadedImage left = io::load_picture(file("left.png"));
+    const io::LoadedImage right = io::load_picture(file("right.png"));
     EXPECT_EQ(differing(pair->left.gray.view(), left.gray.view()), 0) << colour;
     EXPECT_EQ(differing(pair->right.view(), right.gray.view()), 0) << colour;
   }
@@ -240,4 +240,4 @@ TEST_F(Pipelines, AreReopenedAfterAFailure) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -8,7 +8,7 @@
 #include "support/recordings.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,7 +163,7 @@ TEST_F(McapSequence, ReadsCompressedImages) {
     CameraFile camera(file());
     const auto left = camera.topic<ros::CompressedImage>("/left/image_rect/compressed");
     const auto right = camera.topic<ros::CompressedImage>("/right/image_rect/compressed");
-    const std::string png = png_bytes(colours.view());
+    const std::string png = io::png_bytes(colours.view());
     for (const auto channel : {left, right}) {
       camera.add(channel, {5},
                  ros::CompressedImage{ros::header_of({5}, "c"), "png", {png.begin(), png.end()}});
@@ -337,4 +337,4 @@ TEST_F(McapSequence, OfARecordingWithoutOneCompleteChunkIsRefused) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::input

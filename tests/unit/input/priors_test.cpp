@@ -13,7 +13,7 @@
 #include <support/collection.hpp>
 #include <support/temporary_folder.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -327,4 +327,4 @@ TEST(PriorsOfTheCollection, AGyroscopeAtRestDoesNotTurn) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::input

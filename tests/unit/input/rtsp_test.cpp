@@ -16,7 +16,7 @@
 #include <thread>
 
 /// A network camera: an RTSP server on this computer, in a process of its own that is killed and restarted.
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 using namespace std::chrono_literals;
@@ -110,4 +110,4 @@ TEST(Rtsp, RefusesAMissingServerWithoutPrintingThePassword) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -13,7 +13,7 @@
 #include <support/collection.hpp>
 #include <support/temporary_folder.hpp>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,7 +36,7 @@ fs::path save(const TemporaryFolder& folder, const std::string& name, int seed, 
   const fs::path path = folder.path() / name;
   fs::create_directories(path.parent_path());
   const Image<Gray> image = picture(seed, size);
-  save_png(path, image.view());
+  io::save_png(path, image.view());
   return path;
 }
 
@@ -359,8 +359,8 @@ TEST(SequenceOfFolders, KeepsOneScaleForDeepImages) {
     for (int y = 0; y < kSize.height; ++y)
       std::fill_n(deep.row(y), kSize.width, static_cast<std::uint16_t>(value));
     fs::create_directories(folder.path() / name);
-    save_png(folder.path() / name / "left.png", deep.view());
-    save_png(folder.path() / name / "right.png", deep.view());
+    io::save_png(folder.path() / name / "left.png", deep.view());
+    io::save_png(folder.path() / name / "right.png", deep.view());
   }
   const auto frames = all_of(*open(folder));
   EXPECT_EQ(int{frames[0].left.gray(0, 0)}, 4000 >> 4);
@@ -373,8 +373,8 @@ TEST(SequenceOfFolders, ADeepImageAmongThoseOfEightBitsHasItsOwnScale) {
   const Gray before = all_of(*open(folder))[2].left.gray(0, 0);
   Image<std::uint16_t> deep(kSize);
   for (int y = 0; y < kSize.height; ++y) std::fill_n(deep.row(y), kSize.width, std::uint16_t{4000});
-  save_png(folder.path() / "001/left.png", deep.view());
-  save_png(folder.path() / "001/right.png", deep.view());
+  io::save_png(folder.path() / "001/left.png", deep.view());
+  io::save_png(folder.path() / "001/right.png", deep.view());
   const auto frames = all_of(*open(folder));
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_EQ(int{frames[1].left.gray(0, 0)}, 4000 >> 4);
@@ -471,7 +471,7 @@ std::string sensor(double x_m) {
 
 bool has_rectifier() {
   try {
-    (void)Rectifier(RawCalibration{});
+    (void)io::Rectifier(io::RawCalibration{});
   } catch (const Error& error) {
     return std::string(error.what()).find("not built in") == std::string::npos;
   }
@@ -580,4 +580,4 @@ TEST(SequencesOfTheCollection, AreOpened) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -16,7 +16,7 @@
 #include <support/temporary_folder.hpp>
 
 /// V4L2 cameras on a simulated kernel: no such device was available.
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 using namespace std::chrono_literals;
@@ -163,9 +163,9 @@ TEST_F(V4l2, MjpgIsDecodedAndADamagedOneIsDropped) {
       picture(x, y) = {static_cast<std::uint8_t>(15 * x), static_cast<std::uint8_t>(30 * y), 99};
   }
   const std::string jpeg =
-      encode_jpeg({picture.size(), 3, 1, &picture.row(0)->r, picture.view().stride() * 3});
+      io::encode_jpeg({picture.size(), 3, 1, &picture.row(0)->r, picture.view().stride() * 3});
   const support::TemporaryFolder folder;
-  const LoadedImage truth = load_picture(folder.with("frame.jpg", jpeg));
+  const io::LoadedImage truth = io::load_picture(folder.with("frame.jpg", jpeg));
   FakeDevice& device = fake_.devices[kDevice];
   device.formats = {V4L2_PIX_FMT_MJPEG};
   device.width = 16;
@@ -516,14 +516,14 @@ TEST_F(V4l2Sequence, CanBeStoppedFromAnotherThreadWhileWaiting) {
 
 TEST_F(V4l2Sequence, UsesTheGivenCalibrationAndRectifiesRawImages) {
   const support::TemporaryFolder folder;
-  RawCalibration raw{{32, 24}, {}, {}, {}, {}};
+  io::RawCalibration raw{{32, 24}, {}, {}, {}, {}};
   raw.left.matrix = {40, 0, 16, 0, 40, 12, 0, 0, 1};
   raw.right.matrix = {41, 0, 15, 0, 41, 12.5, 0, 0, 1};
   raw.left.distortion = {-0.1, 0.01, 0, 0};
   raw.right.distortion = {-0.12, 0.02, 0, 0};
   raw.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   raw.translation_m = {-0.08, 0, 0};
-  save_raw_calibration(folder.path() / "calib.yaml", raw, {});
+  io::save_raw_calibration(folder.path() / "calib.yaml", raw, {});
   FakeDevice& device = steady();
   device.formats = {V4L2_PIX_FMT_GREY};
   device.width = 64;
@@ -549,8 +549,8 @@ TEST_F(V4l2Sequence, UsesTheGivenCalibrationAndRectifiesRawImages) {
     }
   }
   std::filesystem::create_directories(folder.path() / "files/000");
-  save_png(folder.path() / "files/000/left.png", left.view());
-  save_png(folder.path() / "files/000/right.png", right.view());
+  io::save_png(folder.path() / "files/000/left.png", left.view());
+  io::save_png(folder.path() / "files/000/right.png", right.view());
   const auto truth = open_sequence((folder.path() / "files").string(), options)->next();
   ASSERT_TRUE(truth);
   for (int y = 0; y < 24; ++y) {
@@ -670,4 +670,4 @@ TEST(CameraNames, HaveNoPasswordInMessages) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::input

@@ -14,7 +14,7 @@
 #include <support/temporary_folder.hpp>
 #include <vector>
 
-namespace cairn::io {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,4 +199,4 @@ TEST_F(Video, RefusesInvalidInput) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::input

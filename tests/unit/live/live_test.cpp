@@ -20,15 +20,15 @@ using namespace std::chrono_literals;
 constexpr Size kSize{64, 48};
 
 /// A camera that delivers `frames` pairs, one each `period`, whether they are read or not; or a file.
-class Camera : public io::Sequence {
+class Camera : public input::Sequence {
  public:
   Camera(int frames, std::chrono::milliseconds period, bool is_live)
       : frames_(frames), period_(period), is_live_(is_live) {}
 
-  std::optional<io::SequenceFrame> next() override {
+  std::optional<input::SequenceFrame> next() override {
     if (at_ == frames_ || is_stopped_) return std::nullopt;
     std::this_thread::sleep_for(period_);
-    io::SequenceFrame frame;
+    input::SequenceFrame frame;
     frame.name = std::to_string(at_);
     frame.index = static_cast<std::size_t>(at_);
     frame.stamp = {at_ * std::int64_t{10'000'000}};
@@ -52,11 +52,11 @@ class Camera : public io::Sequence {
   [[nodiscard]] const KnownGround& ground() const override { return ground_; }
   [[nodiscard]] const io::Rectifier* rectifier() const override { return nullptr; }
   [[nodiscard]] std::string stamps_from() const override { return "the test"; }
-  [[nodiscard]] const std::vector<io::SourceRemark>& remarks() const override { return remarks_; }
+  [[nodiscard]] const std::vector<input::SourceRemark>& remarks() const override { return remarks_; }
   [[nodiscard]] const std::string& ended_early() const override { return none_; }
   void stop() override { is_stopped_ = true; }
-  [[nodiscard]] io::SourceStatus status() const override {
-    io::SourceStatus status;
+  [[nodiscard]] input::SourceStatus status() const override {
+    input::SourceStatus status;
     status.is_live = is_live_;
     status.dropped = 7;
     return status;
@@ -72,7 +72,7 @@ class Camera : public io::Sequence {
   std::atomic<bool> is_stopped_ = false;
   std::optional<StereoRig> rig_ = StereoRig{60, 32, 24, 0.1F, 0};
   KnownGround ground_;
-  std::vector<io::SourceRemark> remarks_;
+  std::vector<input::SourceRemark> remarks_;
   std::string none_;
 };
 
@@ -181,7 +181,7 @@ TEST(Runner, PairsThatAreTooOldAreDroppedAndCounted) {
 /// A camera with a gap before the second pair.
 struct Gapped : Camera {
   using Camera::Camera;
-  std::optional<io::SequenceFrame> next() override {
+  std::optional<input::SequenceFrame> next() override {
     auto frame = Camera::next();
     if (frame) frame->after_gap = frame->index == 1;
     return frame;
@@ -274,7 +274,7 @@ TEST(Runner, OptionsApplyFromTheNextFrameAndAreRefusedAsAWhole) {
 TEST(Runner, ShowsTheOptionThatTheSearchForBetterOnesSets) {
   struct OfSample : Camera {
     using Camera::Camera;
-    std::optional<io::SequenceFrame> next() override {
+    std::optional<input::SequenceFrame> next() override {
       auto frame = Camera::next();
       if (frame) frame->left.gray = sample.images.left.gray.clone();
       if (frame) frame->right = sample.images.right.gray.clone();
@@ -309,7 +309,7 @@ TEST(Runner, ShowsTheOptionThatTheSearchForBetterOnesSets) {
 TEST(Runner, AnErrorOfTheSourceIsThrownAfterAllSinksAreDone) {
   struct Broken : Camera {
     using Camera::Camera;
-    std::optional<io::SequenceFrame> next() override {
+    std::optional<input::SequenceFrame> next() override {
       if (++calls > 3) throw Error("frame 3: is of another size");
       return Camera::next();
     }
@@ -343,7 +343,7 @@ TEST(Runner, APairMayBeProcessedInAnotherWay) {
   Camera camera(3, 0ms, false);
   Notebook notebook;
   LiveOptions options = LiveOptions::unpaced();
-  options.step = [](const io::SequenceFrame& pair, const FollowConfig&, const Exec&) {
+  options.step = [](const input::SequenceFrame& pair, const FollowConfig&, const Exec&) {
     TrackedFrame step;
     step.stamp = {pair.stamp.ns + 1};
     return step;

@@ -20,7 +20,7 @@ constexpr Size kSize{64, 48};
 
 /// A frame without results.
 std::shared_ptr<LiveFrame> frame_of(int index, std::uint64_t revision = 0) {
-  auto pair = std::make_shared<io::SequenceFrame>();
+  auto pair = std::make_shared<input::SequenceFrame>();
   pair->name = std::to_string(index);
   pair->index = static_cast<std::size_t>(index);
   pair->stamp = {(index + 1) * 100'000'000LL};
@@ -91,7 +91,7 @@ TEST(Recorder, UsesTheFrameIdOfTheSource) {
     options.what = parse_record_what("all");
     Recorder recorder(some_run(), options);
     const std::shared_ptr<LiveFrame> frame = frame_of(1);
-    auto pair = std::make_shared<io::SequenceFrame>();
+    auto pair = std::make_shared<input::SequenceFrame>();
     pair->stamp = frame->pair->stamp;
     pair->left.gray = recordings::dots(kSize, 1);
     pair->right = recordings::dots(kSize, 2);
@@ -128,7 +128,7 @@ TEST(Recorder, UsesTheFrameIdOfTheSource) {
     }
     EXPECT_EQ(headers, 11);  // 4 images, 2 of camera_info, 2 clouds, objects, disparity, tf
     // On replay, the camera has the name given by the source, or none if it had none.
-    const auto again = io::open_sequence((folder.path() / "a.mcap").string(), {});
+    const auto again = input::open_sequence((folder.path() / "a.mcap").string(), {});
     EXPECT_EQ(again->next()->frame_id, camera);
   }
 }

@@ -47,8 +47,8 @@ FollowConfig first_config() {
   config.segmentation = sample().suited();
   return config;
 }
-io::SequenceFrame pair_at(std::size_t index) {
-  io::SequenceFrame pair;
+input::SequenceFrame pair_at(std::size_t index) {
+  input::SequenceFrame pair;
   pair.name = std::to_string(index);
   pair.index = index;
   pair.stamp.ns = static_cast<std::int64_t>(index + 1) * 100'000'000;
@@ -61,8 +61,8 @@ io::SequenceFrame pair_at(std::size_t index) {
 
 /// The result for the sample, computed once; with distinct stamps and numbers.
 LiveFramePtr frame_at(int index) {
-  static const std::shared_ptr<const io::SequenceFrame> pair =
-      std::make_shared<io::SequenceFrame>(pair_at(0));
+  static const std::shared_ptr<const input::SequenceFrame> pair =
+      std::make_shared<input::SequenceFrame>(pair_at(0));
   static const FollowConfig config = first_config();
   auto frame = std::make_shared<LiveFrame>();
   frame->pair = pair;
@@ -651,7 +651,7 @@ TEST(ViewServer, ASlowClientGetsCompleteFrames) {
 TEST(ViewServer, ReportsTheCamerasStateWithoutFrames) {
   ViewedRun run = run_of_test();
   run.source = [] {
-    io::SourceStatus status;
+    input::SourceStatus status;
     status.is_live = true;
     status.is_connected = false;
     status.trouble = "/dev/video0: unplugged";
@@ -806,9 +806,9 @@ TEST(ViewServer, ListsAllOptionsAndChangesNoneUnlessTunable) {
 }
 
 /// A source that delivers pairs when the test requests them.
-class Fed : public io::Sequence {
+class Fed : public input::Sequence {
  public:
-  std::optional<io::SequenceFrame> next() override {
+  std::optional<input::SequenceFrame> next() override {
     while (!is_stopped_) {
       std::size_t left = allowed_;
       if (left > 0 && allowed_.compare_exchange_strong(left, left - 1)) return pair_at(index_++);
@@ -824,11 +824,11 @@ class Fed : public io::Sequence {
   [[nodiscard]] const KnownGround& ground() const override { return ground_; }
   [[nodiscard]] const io::Rectifier* rectifier() const override { return nullptr; }
   [[nodiscard]] std::string stamps_from() const override { return "a test"; }
-  [[nodiscard]] const std::vector<io::SourceRemark>& remarks() const override { return remarks_; }
+  [[nodiscard]] const std::vector<input::SourceRemark>& remarks() const override { return remarks_; }
   [[nodiscard]] const std::string& ended_early() const override { return nothing_; }
   void stop() override { is_stopped_ = true; }
-  [[nodiscard]] io::SourceStatus status() const override {
-    io::SourceStatus status;
+  [[nodiscard]] input::SourceStatus status() const override {
+    input::SourceStatus status;
     status.is_live = true;  // without pacing
     return status;
   }
@@ -839,7 +839,7 @@ class Fed : public io::Sequence {
   std::atomic<bool> is_stopped_ = false;
   std::size_t index_ = 0;
   KnownGround ground_;
-  std::vector<io::SourceRemark> remarks_;
+  std::vector<input::SourceRemark> remarks_;
   std::string nothing_;
 };
 
@@ -848,7 +848,7 @@ struct Tuned {
   Tuned() {
     LiveOptions how;
     how.tracks = false;
-    runner.emplace(source, "fed", io::SensorFiles{}, first_config(), how, Exec{});
+    runner.emplace(source, "fed", SensorFiles{}, first_config(), how, Exec{});
     ViewOptions options = options_of_test();
     options.tunable = true;
     ViewedRun run = run_of_test();

@@ -13,7 +13,7 @@
 #include "support/packed_map.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,7 +104,7 @@ TEST(FollowPage, TheImageIsTheLeftOne) {
   const std::string uri = Json::parse(scene.encoded().maps).at("left");
   const std::string start = "data:image/jpeg;base64,";
   ASSERT_TRUE(uri.starts_with(start));
-  const Raster raster = decode_jpeg(support::bytes_of_base64(uri.substr(start.size())));
+  const io::Raster raster = io::decode_jpeg(support::bytes_of_base64(uri.substr(start.size())));
   EXPECT_EQ(raster.size, kSize);
   EXPECT_NEAR(raster.row<std::uint8_t>(5)[5], 90, 3);
 }
@@ -147,9 +147,9 @@ TEST(FollowPage, ContainsTheTransformOfTheOdometryInTheMap) {
   const auto place = [&] {
     return Json::parse(encode_step(scene.step, "", scene.left, {}, {}, marked).facts).at("map_from_odom");
   };
-  EXPECT_EQ(place(), Json::parse(R"({"yaw_rad": 0.5, "position_m": [2, -1, 0]})"));
+  EXPECT_EQ(io::place(), Json::parse(R"({"yaw_rad": 0.5, "position_m": [2, -1, 0]})"));
   marked.state.is_located = false;
-  EXPECT_TRUE(place().is_null());
+  EXPECT_TRUE(io::place().is_null());
 }
 
 TEST(FollowPage, UnknownValuesAreNull) {
@@ -243,4 +243,4 @@ TEST(FollowPage, AMissingFolderIsNamed) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -16,7 +16,7 @@
 
 #include "support/packed_map.hpp"
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 using Json = nlohmann::json;
@@ -56,7 +56,7 @@ template <class T>
 void expect_picture(const std::string& uri, int channels, const Image<T>& expected) {
   const std::string head = "data:image/jpeg;base64,";
   ASSERT_TRUE(uri.starts_with(head));
-  const Raster raster = decode_jpeg(support::bytes_of_base64(uri.substr(head.size())));
+  const io::Raster raster = io::decode_jpeg(support::bytes_of_base64(uri.substr(head.size())));
   ASSERT_EQ(raster.size, kSize);
   ASSERT_EQ(raster.channels, channels);
   int worst = 0;
@@ -234,4 +234,4 @@ TEST(HtmlPage, AcceptsAnEmptyFrameAndASinglePixel) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::output

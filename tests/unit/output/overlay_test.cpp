@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 Objects one_object(Size size, Rect box) {
@@ -196,4 +196,4 @@ TEST(DisparityView, AcceptsOnlyHolesAndOnePixel) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -18,7 +18,7 @@
 #include <sstream>
 #include <support/temporary_folder.hpp>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ using namespace std::string_literals;
 
 constexpr Size kSize{60, 40};
 
-std::string text_of(const fs::path& path) {
+std::string io::text_of(const fs::path& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
   return text.str();
@@ -189,7 +189,7 @@ TEST(ObjectsJson, HasTheMaskInCocoFormat) {
   const Json object =
       Json::parse(objects_json(frame_with_one_object(false), some_provenance())).at("objects").at(0);
   EXPECT_EQ(object.at("segmentation").at("size"), (Json{40, 60}));  // height first
-  const Image<std::uint8_t> mask = decode_rle({kSize, object.at("segmentation").at("counts")});
+  const Image<std::uint8_t> mask = io::decode_rle({kSize, object.at("segmentation").at("counts")});
   EXPECT_EQ(mask(20, 10), 1);
   EXPECT_EQ(mask(34, 21), 1);
   EXPECT_EQ(mask(35, 21), 0);
@@ -216,18 +216,18 @@ TEST_F(ResultFolder, HasAllFilesOfAResultAndNoTemporaryOnes) {
 TEST_F(ResultFolder, IsReadBackAsWritten) {
   const Frame frame = frame_with_one_object(true);
   write(root_ / "out", frame, some_provenance());
-  const Image<float> disparity = load_disparity(root_ / "out" / "disparity.png");
+  const Image<float> disparity = io::load_disparity(root_ / "out" / "disparity.png");
   EXPECT_TRUE(std::isnan(disparity(0, 0)));
   EXPECT_FLOAT_EQ(disparity(1, 0), 1 / 256.0F);  // a true 0 is written as 1
   EXPECT_FLOAT_EQ(disparity(30, 30), 10.0F);
-  const Labels objects = load_labels(root_ / "out" / "objects.png");
+  const io::Labels objects = io::load_labels(root_ / "out" / "objects.png");
   EXPECT_EQ(objects.bits, 16);
   EXPECT_EQ(objects.ids(20, 10), 1);
   EXPECT_EQ(objects.ids(19, 10), 0);
-  const Labels reject = load_labels(root_ / "out" / "reject.png");
+  const io::Labels reject = io::load_labels(root_ / "out" / "reject.png");
   EXPECT_EQ(reject.bits, 16);
   EXPECT_EQ(reject.ids(0, 0), 1 + 8);
-  const Labels confidence = load_labels(root_ / "out" / "confidence.png");
+  const io::Labels confidence = io::load_labels(root_ / "out" / "confidence.png");
   EXPECT_EQ(confidence.bits, 8);
   EXPECT_EQ(confidence.ids(0, 0), 0);
   EXPECT_EQ(confidence.ids(30, 30), 191);  // 255·0.75, rounded
@@ -243,7 +243,7 @@ TEST_F(ResultFolder, HasAPfmIfSixteenBitsCannotHoldTheSearchRange) {
   write(root_ / "out", frame_with_one_object(false), provenance);
   EXPECT_TRUE(fs::exists(root_ / "out" / "disparity.pfm"));
   EXPECT_FALSE(fs::exists(root_ / "out" / "disparity.png"));
-  EXPECT_FLOAT_EQ(load_disparity(root_ / "out" / "disparity.pfm")(1, 0), 0.0F);
+  EXPECT_FLOAT_EQ(io::load_disparity(root_ / "out" / "disparity.pfm")(1, 0), 0.0F);
 }
 
 TEST_F(ResultFolder, ReplacesAnOlderResultAndKeepsOtherFiles) {
@@ -331,7 +331,7 @@ TEST_F(ResultFolder, KeepsTheOlderResultIfTheNewOneFails) {
   frame.objects.labels(0, 0) = ObjectId{70000};
   EXPECT_THROW(write(root_ / "out", frame, some_provenance()), Error);
   EXPECT_EQ(names(root_ / "out"), before);
-  EXPECT_EQ(load_labels(root_ / "out" / "objects.png").ids(20, 10), 1);
+  EXPECT_EQ(io::load_labels(root_ / "out" / "objects.png").ids(20, 10), 1);
 }
 
 TEST_F(ResultFolder, RefusesOtherObjectsJson) {
@@ -356,17 +356,17 @@ TEST_F(ResultFolder, HasDepthAndGridOnRequest) {
   const Image<Gray> left(kSize, Gray{90}, {});
   write_result(root_ / "with", left, {}, frame, some_provenance(), {.depth = true, .grid = true});
   // Z = 500 · 0.12 / 10 = 6 m; a hole at (0, 0), infinity at (1, 0).
-  const Labels depth = load_labels(root_ / "with" / "depth.png");
+  const io::Labels depth = io::load_labels(root_ / "with" / "depth.png");
   EXPECT_EQ(depth.ids(5, 5), 6000);
   EXPECT_EQ(depth.ids(0, 0), 0);
   EXPECT_EQ(depth.ids(1, 0), 0);
-  const std::string npy = text_of(root_ / "with" / "depth.npy");
+  const std::string npy = io::text_of(root_ / "with" / "depth.npy");
   ASSERT_EQ(npy.size() % 64, static_cast<std::size_t>(kSize.area()) * 4 % 64);
   EXPECT_EQ(npy.substr(0, 6), "\x93NUMPY");
   EXPECT_NE(npy.find("'shape': (40, 60)"), std::string::npos);
-  const std::string pgm = text_of(root_ / "with" / "grid.pgm");
+  const std::string pgm = io::text_of(root_ / "with" / "grid.pgm");
   EXPECT_EQ(pgm.substr(0, 15), "P5\n120 240\n255\n"s.substr(0, 15));
-  EXPECT_NE(text_of(root_ / "with" / "grid.yaml").find("resolution: 0.05\norigin: [0.0, -6.0, 0.0]"),
+  EXPECT_NE(io::text_of(root_ / "with" / "grid.yaml").find("resolution: 0.05\norigin: [0.0, -6.0, 0.0]"),
             std::string::npos);
   EXPECT_TRUE(names(root_ / "with").count("space.png"));
 
@@ -376,4 +376,4 @@ TEST_F(ResultFolder, HasDepthAndGridOnRequest) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -9,7 +9,7 @@
 #include <string>
 #include <support/temporary_folder.hpp>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 using support::has;
@@ -125,7 +125,7 @@ TEST(TrackFiles, MasksMustFitAndNotOverlap) {
   const auto with_counts = [](const std::string& counts, int id) {
     TrackRecord record;
     record.id = TrackId{id};
-    record.mask = Rle{{4, 3}, counts};
+    record.mask = io::Rle{{4, 3}, counts};
     return record;
   };
   EXPECT_TRUE(has(refusal([&] {
@@ -186,7 +186,7 @@ void write_truth(const TemporaryFolder& folder, const std::string& pose, const s
   ids(1, 1) = 9;
   ids(0, 0) = 255;
   std::filesystem::create_directories(folder.path() / "000");
-  save_png(folder.path() / "000/objects.png", ids.view());
+  io::save_png(folder.path() / "000/objects.png", ids.view());
   if (!pose.empty()) (void)folder.with("000/pose.txt", pose);
   if (!scene.empty()) (void)folder.with("000/scene.json", scene);
 }
@@ -197,9 +197,9 @@ TEST(TrueFrames, AFolderHasLabelsPosesAndPositions) {
               R"({"objects": [{"id": 9, "centroid_visible_cam": [1, 2, 3], "centroid_world": null}]})");
   (void)folder.with("events.json", R"({"events": [{"id": 9, "what": "moves in view", "first_frame": 1,
       "last_frame": 2, "from_xy": [0, 1], "to_xy": [2, 3]}]})");
-  const TrueSequence truth = load_truth(folder.path());
+  const input::TrueSequence truth = input::load_truth(folder.path());
   ASSERT_EQ(truth.frames.size(), 1U);
-  const TrueFrame& one = truth.frames[0];
+  const input::TrueFrame& one = truth.frames[0];
   EXPECT_EQ(one.name, "000");
   ASSERT_TRUE(one.world_from_camera);
   EXPECT_EQ((*one.world_from_camera)({1, 0, 0}), (Point3{5, 7, 7}));
@@ -207,7 +207,7 @@ TEST(TrueFrames, AFolderHasLabelsPosesAndPositions) {
   EXPECT_FALSE(one.places.at(9).in_world_m);
   ASSERT_EQ(truth.events.size(), 1U);
   EXPECT_TRUE(truth.events[0].is_in_view);
-  const Image<TruthId> labels = load_true_labels(one);
+  const Image<TruthId> labels = input::load_true_labels(one);
   EXPECT_EQ(number(labels(1, 1)), 9);
   EXPECT_EQ(labels(0, 0), TruthId::dont_care);
 }
@@ -218,7 +218,7 @@ TEST(TrueFrames, MalformedInputIsRefusedByName) {
                         std::initializer_list<std::string_view> words) {
     const TemporaryFolder folder;
     write_truth(folder, pose, scene);
-    EXPECT_TRUE(has(refusal([&] { load_truth(folder.path()); }), words));
+    EXPECT_TRUE(has(refusal([&] { input::load_truth(folder.path()); }), words));
   };
   says("1 2 3", "", {"pose.txt: found 3 numbers"});
   says("1 x", "", {"pose.txt:1: found 'x'"});
@@ -228,15 +228,16 @@ TEST(TrueFrames, MalformedInputIsRefusedByName) {
   says(good, R"({"objects": 7})", {"scene.json: `objects` is 7, expected a list"});
   says(good, R"({"objects": [{"id": 2e128}]})", {"scene.json: `id` is 2e+128"});
   const TemporaryFolder empty;
-  EXPECT_TRUE(has(refusal([&] { load_truth(empty.path()); }), {"no sub-folder with objects.png"}));
-  EXPECT_TRUE(has(refusal([&] { load_truth(empty.path() / "x"); }), {"no such file or folder"}));
+  EXPECT_TRUE(has(refusal([&] { input::load_truth(empty.path()); }), {"no sub-folder with objects.png"}));
+  EXPECT_TRUE(has(refusal([&] { input::load_truth(empty.path() / "x"); }), {"no such file or folder"}));
 }
 
 TEST(TrueFrames, MotsTextIsAccepted) {
   const TemporaryFolder folder;
-  const TrueSequence truth = load_truth(folder.with("gt.txt", "0 5 1 3 4 066\n0 6 10 3 4 66\n"));
+  const input::TrueSequence truth =
+      input::load_truth(folder.with("gt.txt", "0 5 1 3 4 066\n0 6 10 3 4 66\n"));
   EXPECT_TRUE(truth.is_numbered);
-  const Image<TruthId> labels = load_true_labels(truth.frames.at(0));
+  const Image<TruthId> labels = input::load_true_labels(truth.frames.at(0));
   EXPECT_EQ(number(labels(0, 0)), 5);
   EXPECT_EQ(labels(3, 0), TruthId::dont_care);
 }
@@ -264,4 +265,4 @@ TEST(TrajectoryFiles, MalformedInputIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::output

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace cairn::io {
+namespace cairn::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -147,4 +147,4 @@ TEST_F(TrajectoryFiles, AreRefusedInOneLineThatNamesThePosition) {
 }
 
 }  // namespace
-}  // namespace cairn::io
+}  // namespace cairn::output

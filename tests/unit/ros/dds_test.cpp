@@ -20,7 +20,7 @@
 
 /// ROS 2 topics: our serialisation equals Cyclone's, published messages equal the results, and pairs arrive
 /// as sent.
-namespace cairn::dds {
+namespace cairn::ros {
 namespace {
 
 using namespace std::chrono_literals;
@@ -51,7 +51,7 @@ live::LiveFramePtr made_frame(const std::string& frame_id) {
   frame->step.stamp = {1'700'000'000'123'456'789};
   frame->step.frame = segment(StereoPair::from(images.left.gray, images.right.gray, images.left.rgb),
                               calibration.rig, config.segmentation, {});
-  auto pair = std::make_shared<io::SequenceFrame>();
+  auto pair = std::make_shared<input::SequenceFrame>();
   pair->name = "four_in_a_row";
   pair->left = std::move(images.left);
   pair->right = std::move(images.right.gray);
@@ -85,19 +85,19 @@ TEST_F(Dds, NamesFollowRos) {
 
 template <class M>
 void expect_known_hash() {
-  EXPECT_EQ(type_hash(M::kType), ros::TypeDescription::hash<M>()) << M::kType;
+  EXPECT_EQ(type_hash(M::kType), TypeDescription::hash<M>()) << M::kType;
 }
 
 TEST_F(Dds, TypeHashesFollowFromTheMembers) {
   EXPECT_EQ(io::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  expect_known_hash<ros::String>();
-  expect_known_hash<ros::Image>();
-  expect_known_hash<ros::CameraInfo>();
-  expect_known_hash<ros::PointCloud2>();
-  expect_known_hash<ros::DisparityImage>();
-  expect_known_hash<ros::Detection3DArray>();
-  expect_known_hash<ros::OccupancyGrid>();
-  expect_known_hash<ros::TFMessage>();
+  expect_known_hash<String>();
+  expect_known_hash<Image>();
+  expect_known_hash<CameraInfo>();
+  expect_known_hash<PointCloud2>();
+  expect_known_hash<DisparityImage>();
+  expect_known_hash<Detection3DArray>();
+  expect_known_hash<OccupancyGrid>();
+  expect_known_hash<TFMessage>();
   // As published by ROS 2's interface packages.
   EXPECT_EQ(type_hash("std_msgs/msg/String"),
             "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
@@ -135,7 +135,7 @@ TEST_F(Dds, TheDomainComesFromTheEnvironment) {
 
 /// Sends a message to a reader generated from IDL, sends what it received back through a generated writer,
 /// and compares.
-template <class Theirs, ros::Message M>
+template <class Theirs, Message M>
 void expect_the_bytes_of_cyclone(const M& message, const dds_topic_descriptor_t& description) {
   const Participant ours;
   const std::string there = own_topic("there/" + std::string(M::kType.substr(M::kType.rfind('/') + 1)));
@@ -168,52 +168,51 @@ void expect_the_bytes_of_cyclone(const M& message, const dds_topic_descriptor_t&
   ASSERT_EQ(dds_write(their_writer.handle(), static_cast<const Theirs*>(sample)), DDS_RETCODE_OK);
   dds_return_loan(their_reader.handle(), &sample, 1);
 
-  std::optional<ros::Bytes> came;
+  std::optional<Bytes> came;
   ASSERT_TRUE(comes_true([&] { return (came = reader.take()).has_value(); }));
-  ros::Bytes sent = ros::encode(message);
+  Bytes sent = encode(message);
   // In newer versions of the protocol, the header's last byte is the number of padding bytes.
   (*came)[3] = 0;
   came->resize(std::max(came->size(), sent.size()));
   sent.resize(came->size());
-  EXPECT_LT(came->size() - ros::encode(message).size(), 4U);
+  EXPECT_LT(came->size() - encode(message).size(), 4U);
   EXPECT_TRUE(sent == *came) << M::kType;
 }
 
 TEST_F(Dds, BytesEqualThoseOfCyclone) {
   const TrackedFrame& step = live_frame()->step;
-  const ros::Header header = ros::header_of(step.stamp, "camera");
+  const Header header = header_of(step.stamp, "camera");
   const StereoRig camera = rig();
-  expect_the_bytes_of_cyclone<std_msgs_msg_dds__String_>(ros::String{"so"}, std_msgs_msg_dds__String__desc);
-  expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__Image_>(ros::labels_of(header, step),
+  expect_the_bytes_of_cyclone<std_msgs_msg_dds__String_>(String{"so"}, std_msgs_msg_dds__String__desc);
+  expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__Image_>(labels_of(header, step),
                                                            sensor_msgs_msg_dds__Image__desc);
   expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__CameraInfo_>(
-      ros::camera_info_of(header, camera, {640, 480}, ros::Side::right),
-      sensor_msgs_msg_dds__CameraInfo__desc);
+      camera_info_of(header, camera, {640, 480}, Side::right), sensor_msgs_msg_dds__CameraInfo__desc);
   expect_the_bytes_of_cyclone<stereo_msgs_msg_dds__DisparityImage_>(
-      ros::disparity_image_of(header, step.frame, camera, live_frame()->config->segmentation.match),
+      disparity_image_of(header, step.frame, camera, live_frame()->config->segmentation.match),
       stereo_msgs_msg_dds__DisparityImage__desc);
-  const ros::PointCloud2 cloud = ros::cloud_of(header, step.frame, ObstacleLabel::obstacle, camera,
-                                               live_frame()->pair->left.gray.view(), {}, 3);
+  const PointCloud2 cloud = cloud_of(header, step.frame, ObstacleLabel::obstacle, camera,
+                                     live_frame()->pair->left.gray.view(), {}, 3);
   EXPECT_GT(cloud.width, 100U);
   expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__PointCloud2_>(cloud,
                                                                  sensor_msgs_msg_dds__PointCloud2__desc);
-  const ros::Detection3DArray detections = ros::detections_of(header, step, camera);
+  const Detection3DArray detections = detections_of(header, step, camera);
   EXPECT_GE(detections.detections.size(), 2U);
   expect_the_bytes_of_cyclone<vision_msgs_msg_dds__Detection3DArray_>(
       detections, vision_msgs_msg_dds__Detection3DArray__desc);
-  const auto grid = ros::grid_of(header, step.frame, camera, live_frame()->config->segmentation.space);
+  const auto grid = grid_of(header, step.frame, camera, live_frame()->config->segmentation.space);
   ASSERT_TRUE(grid);
   expect_the_bytes_of_cyclone<nav_msgs_msg_dds__OccupancyGrid_>(*grid, nav_msgs_msg_dds__OccupancyGrid__desc);
-  const auto floor = ros::floor_transform_of(step.stamp, {}, step.frame.ground, camera);
+  const auto floor = floor_transform_of(step.stamp, {}, step.frame.ground, camera);
   ASSERT_TRUE(floor);
-  expect_the_bytes_of_cyclone<tf2_msgs_msg_dds__TFMessage_>(ros::TFMessage{{*floor, *floor}},
+  expect_the_bytes_of_cyclone<tf2_msgs_msg_dds__TFMessage_>(TFMessage{{*floor, *floor}},
                                                             tf2_msgs_msg_dds__TFMessage__desc);
 }
 
 TEST_F(Dds, WritersAnnounceTheirTypeHash) {
   const Participant participant;
   const std::string topic = own_topic("hash");
-  const Writer<ros::Image> writer(participant, topic);
+  const Writer<Image> writer(participant, topic);
   const Entity reader(
       dds_create_reader(participant.handle(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
       "builtin");
@@ -235,7 +234,7 @@ TEST_F(Dds, WritersAnnounceTheirTypeHash) {
     }
     return !data.empty();
   }));
-  EXPECT_EQ(data, "typehash=" + std::string(type_hash(ros::Image::kType)) + ";");
+  EXPECT_EQ(data, "typehash=" + std::string(type_hash(Image::kType)) + ";");
 }
 
 // ---- publishing ----
@@ -245,18 +244,18 @@ TEST_F(Dds, ResultsArePublished) {
   live::Ros2Options options;
   options.name_space = own_topic("found");
   const StereoRig camera = rig();
-  const auto sink = ros2_sink(options, camera);
+  const auto sink = live::ros2_sink(options, camera);
   const Participant participant;
   const auto topic = [&](const char* name) { return options.name_space + "/" + name; };
-  Reader<ros::Detection3DArray> objects(participant, topic("objects"), {true, 5});
-  Reader<ros::DisparityImage> disparity(participant, topic("disparity"));
-  Reader<ros::PointCloud2> obstacles(participant, topic("obstacles"));
-  Reader<ros::PointCloud2> floor(participant, topic("floor"));
-  Reader<ros::Image> labels(participant, topic("labels"));
-  Reader<ros::Image> reject(participant, topic("reject"));
-  Reader<ros::OccupancyGrid> grid(participant, topic("grid"));
-  Reader<ros::String> stats(participant, topic("stats"));
-  Reader<ros::TFMessage> transforms(participant, "/tf", {true, 50});
+  Reader<Detection3DArray> objects(participant, topic("objects"), {true, 5});
+  Reader<DisparityImage> disparity(participant, topic("disparity"));
+  Reader<PointCloud2> obstacles(participant, topic("obstacles"));
+  Reader<PointCloud2> floor(participant, topic("floor"));
+  Reader<Image> labels(participant, topic("labels"));
+  Reader<Image> reject(participant, topic("reject"));
+  Reader<OccupancyGrid> grid(participant, topic("grid"));
+  Reader<String> stats(participant, topic("stats"));
+  Reader<TFMessage> transforms(participant, "/tf", {true, 50});
   // Messages sent before discovery may miss a reader.
   const auto come = [&](auto& reader) {
     auto message = reader.take();
@@ -267,23 +266,22 @@ TEST_F(Dds, ResultsArePublished) {
     });
     return message;
   };
-  const ros::Header header = ros::header_of(frame->step.stamp, "cairn_camera");
+  const Header header = header_of(frame->step.stamp, "cairn_camera");
   const Frame& found = frame->step.frame;
   const auto expect_same = [](const auto& message, const auto& expected) {
     ASSERT_TRUE(message.has_value());
-    EXPECT_TRUE(ros::encode(*message) == ros::encode(expected));
+    EXPECT_TRUE(encode(*message) == encode(expected));
   };
   const View<const Gray> left = frame->pair->left.gray.view();
   const View<const Rgb> colours = frame->pair->left.rgb.view();
-  expect_same(come(objects), ros::detections_of(header, frame->step, camera));
-  expect_same(come(disparity),
-              ros::disparity_image_of(header, found, camera, frame->config->segmentation.match));
-  expect_same(come(obstacles), ros::cloud_of(header, found, ObstacleLabel::obstacle, camera, left, colours));
-  expect_same(come(floor), ros::cloud_of(header, found, ObstacleLabel::floor, camera, left, colours));
-  expect_same(come(labels), ros::labels_of(header, frame->step));
-  expect_same(come(reject), ros::reject_of(header, found));
-  expect_same(come(grid), *ros::grid_of(ros::header_of(frame->step.stamp, "cairn_floor"), found, camera,
-                                        frame->config->segmentation.space));
+  expect_same(come(objects), detections_of(header, frame->step, camera));
+  expect_same(come(disparity), disparity_image_of(header, found, camera, frame->config->segmentation.match));
+  expect_same(come(obstacles), cloud_of(header, found, ObstacleLabel::obstacle, camera, left, colours));
+  expect_same(come(floor), cloud_of(header, found, ObstacleLabel::floor, camera, left, colours));
+  expect_same(come(labels), labels_of(header, frame->step));
+  expect_same(come(reject), reject_of(header, found));
+  expect_same(come(grid), *grid_of(header_of(frame->step.stamp, "cairn_floor"), found, camera,
+                                   frame->config->segmentation.space));
   const auto said = come(stats);
   ASSERT_TRUE(said);
   const auto json = nlohmann::json::parse(said->data);
@@ -304,17 +302,17 @@ TEST_F(Dds, TheFrameIdIsTheSourcesUnlessSet) {
     live::Ros2Options options;
     options.name_space = own_topic("named" + requested);
     options.camera_frame = requested;
-    const auto sink = ros2_sink(options, rig());
+    const auto sink = live::ros2_sink(options, rig());
     const Participant participant;
-    Reader<ros::Detection3DArray> reader(participant, options.name_space + "/objects");
-    std::optional<ros::Detection3DArray> came;
+    Reader<Detection3DArray> reader(participant, options.name_space + "/objects");
+    std::optional<Detection3DArray> came;
     ASSERT_TRUE(comes_true([&] {
       sink->offer(frame);
       std::this_thread::sleep_for(20ms);
       return (came = reader.take()).has_value();
     }));
     EXPECT_EQ(came->header.frame_id, requested.empty() ? "front_left_optical" : requested);
-    EXPECT_EQ(came->header.stamp.nanosec, ros::time_of(frame->step.stamp).nanosec);
+    EXPECT_EQ(came->header.stamp.nanosec, time_of(frame->step.stamp).nanosec);
   }
 }
 
@@ -323,10 +321,10 @@ TEST_F(Dds, HolesAreInRosConventionOnRequest) {
   options.name_space = own_topic("holes");
   options.marks_holes_as_ros = true;
   options.camera_frame = "left_optical";
-  const auto sink = ros2_sink(options, rig());
+  const auto sink = live::ros2_sink(options, rig());
   const Participant participant;
-  Reader<ros::DisparityImage> reader(participant, options.name_space + "/disparity");
-  std::optional<ros::DisparityImage> came;
+  Reader<DisparityImage> reader(participant, options.name_space + "/disparity");
+  std::optional<DisparityImage> came;
   ASSERT_TRUE(comes_true([&] {
     sink->offer(live_frame());
     std::this_thread::sleep_for(20ms);
@@ -349,7 +347,7 @@ TEST_F(Dds, HolesAreInRosConventionOnRequest) {
 TEST_F(Dds, NothingIsEncodedWithoutSubscribers) {
   live::Ros2Options options;
   options.name_space = own_topic("nobody");
-  const auto sink = ros2_sink(options, rig());
+  const auto sink = live::ros2_sink(options, rig());
   for (int i = 0; i < 3; ++i) {
     sink->offer(live_frame());
     std::this_thread::sleep_for(30ms);
@@ -361,9 +359,9 @@ TEST_F(Dds, NothingIsEncodedWithoutSubscribers) {
 TEST_F(Dds, AWriterDoesNotWaitForAStuckReader) {
   live::Ros2Options options;
   options.name_space = own_topic("stuck");
-  const auto sink = ros2_sink(options, rig());
+  const auto sink = live::ros2_sink(options, rig());
   const Participant participant;
-  const Reader<ros::DisparityImage> stuck(participant, options.name_space + "/disparity", {true, 5});
+  const Reader<DisparityImage> stuck(participant, options.name_space + "/disparity", {true, 5});
   ASSERT_TRUE(comes_true([&] { return stuck.has_writer(); }));
   const auto began = std::chrono::steady_clock::now();
   for (int i = 0; i < 1000; ++i) sink->offer(live_frame());
@@ -377,8 +375,8 @@ TEST_F(Dds, AWriterDoesNotWaitForAStuckReader) {
 
 // ---- subscribing ----
 
-ros::Image image(const std::string& encoding, std::uint32_t width, std::uint32_t step, ros::Bytes data) {
-  ros::Image message;
+Image image(const std::string& encoding, std::uint32_t width, std::uint32_t step, Bytes data) {
+  Image message;
   message.width = width;
   message.step = step;
   message.height = static_cast<std::uint32_t>(data.size() / step);
@@ -387,12 +385,12 @@ ros::Image image(const std::string& encoding, std::uint32_t width, std::uint32_t
   return message;
 }
 
-io::LoadedPair images(const ros::Image& left, const ros::Image& right, int bits = 8) {
-  return io::pictures_of(left, "/l", right, "/r", bits, {});
+io::LoadedPair images(const Image& left, const Image& right, int bits = 8) {
+  return input::pictures_of(left, "/l", right, "/r", bits, {});
 }
 
 TEST(RosImages, RowsMayBeLongerThanTheImage) {
-  const ros::Image grey = image("mono8", 2, 4, {1, 2, 9, 9, 3, 4, 9, 9});
+  const Image grey = image("mono8", 2, 4, {1, 2, 9, 9, 3, 4, 9, 9});
   const io::LoadedPair pair = images(grey, grey);
   EXPECT_EQ(pair.left.gray.size(), (Size{2, 2}));
   EXPECT_EQ(pair.left.gray(1, 0), 2);
@@ -416,8 +414,8 @@ TEST(RosImages, DropAlpha) {
 }
 
 TEST(RosImages, DeepImagesKeepTheirHighBits) {
-  ros::Image left = image("mono16", 2, 4, {0x00, 0x01, 0xff, 0x0f});
-  const ros::Image right = image("mono16", 2, 4, {0x10, 0x00, 0x20, 0x00});
+  Image left = image("mono16", 2, 4, {0x00, 0x01, 0xff, 0x0f});
+  const Image right = image("mono16", 2, 4, {0x10, 0x00, 0x20, 0x00});
   const io::LoadedPair pair = images(left, right);
   EXPECT_EQ(pair.bits, 12);
   EXPECT_EQ(pair.left.gray(0, 0), 0x10);
@@ -430,8 +428,8 @@ TEST(RosImages, DeepImagesKeepTheirHighBits) {
 }
 
 TEST(RosImages, RefusesInvalidImages) {
-  const ros::Image sound = image("mono8", 2, 2, {1, 2, 3, 4});
-  ros::Image other = sound;
+  const Image sound = image("mono8", 2, 2, {1, 2, 3, 4});
+  Image other = sound;
   other.encoding = "bayer_rggb8";
   EXPECT_EQ(
       message_of([&] { images(sound, other); }),
@@ -462,10 +460,10 @@ TEST(RosImages, RefusesInvalidImages) {
 class Camera {
  public:
   explicit Camera(const std::string& prefix, bool with_infos = true, std::int64_t right_later_ns = 0)
-      : images_{Writer<ros::Image>(participant_, prefix + "/left/image_rect"),
-                Writer<ros::Image>(participant_, prefix + "/right/image_rect")},
-        infos_{Writer<ros::CameraInfo>(participant_, prefix + "/left/camera_info"),
-               Writer<ros::CameraInfo>(participant_, prefix + "/right/camera_info")},
+      : images_{Writer<Image>(participant_, prefix + "/left/image_rect"),
+                Writer<Image>(participant_, prefix + "/right/image_rect")},
+        infos_{Writer<CameraInfo>(participant_, prefix + "/left/camera_info"),
+               Writer<CameraInfo>(participant_, prefix + "/right/camera_info")},
         thread_([this, with_infos, right_later_ns] { work(with_infos, right_later_ns); }) {}
   ~Camera() { end(); }
   void end() {
@@ -475,28 +473,27 @@ class Camera {
 
  private:
   void work(bool with_infos, std::int64_t right_later_ns) {
-    const io::SequenceFrame& pair = *live_frame()->pair;
+    const input::SequenceFrame& pair = *live_frame()->pair;
     const StereoRig camera = rig();
     for (std::int64_t i = 1; !is_over_; ++i) {
       const Stamp stamp{i * 50'000'000};
       for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-        const ros::Header header =
-            ros::header_of({stamp.ns + (side == 1 ? right_later_ns : 0)}, "left_optical");
+        const Header header = header_of({stamp.ns + (side == 1 ? right_later_ns : 0)}, "left_optical");
         if (with_infos) {
-          infos_[side].write(ros::camera_info_of(header, camera, pair.right.size(),
-                                                 side == 0 ? ros::Side::left : ros::Side::right));
+          infos_[side].write(
+              camera_info_of(header, camera, pair.right.size(), side == 0 ? Side::left : Side::right));
         }
-        images_[side].write(side == 0 ? pair.left.rgb.empty() ? ros::image_of(header, pair.left.gray.view())
-                                                              : ros::image_of(header, pair.left.rgb.view())
-                                      : ros::image_of(header, pair.right.view()));
+        images_[side].write(side == 0 ? pair.left.rgb.empty() ? image_of(header, pair.left.gray.view())
+                                                              : image_of(header, pair.left.rgb.view())
+                                      : image_of(header, pair.right.view()));
       }
       std::this_thread::sleep_for(50ms);
     }
   }
 
   Participant participant_;
-  std::array<Writer<ros::Image>, 2> images_;
-  std::array<Writer<ros::CameraInfo>, 2> infos_;
+  std::array<Writer<Image>, 2> images_;
+  std::array<Writer<CameraInfo>, 2> infos_;
   std::atomic<bool> is_over_ = false;
   std::thread thread_;
 };
@@ -511,8 +508,8 @@ bool equal(View<const Gray> a, View<const Gray> b) {
 TEST_F(Dds, ASourceDeliversPairsUnchanged) {
   const std::string prefix = own_topic("stereo");
   const Camera camera(prefix);
-  const auto source = ros2_sequence("ros2:" + prefix, {}, {});
-  const io::SequenceFrame& sent = *live_frame()->pair;
+  const auto source = input::ros2_sequence("ros2:" + prefix, {}, {});
+  const input::SequenceFrame& sent = *live_frame()->pair;
   EXPECT_EQ(source->image_size(), sent.right.size());
   ASSERT_TRUE(source->rig());
   const StereoRig expected = rig();
@@ -539,7 +536,7 @@ TEST_F(Dds, ASourceDeliversPairsUnchanged) {
 TEST_F(Dds, ASourceEndsSoonWhenItIsStopped) {
   const std::string prefix = own_topic("stopped");
   auto camera = std::make_unique<Camera>(prefix);
-  const auto source = ros2_sequence("ros2:" + prefix, {}, {});
+  const auto source = input::ros2_sequence("ros2:" + prefix, {}, {});
   camera.reset();
   std::atomic<bool> has_ended = false;
   std::thread taker([&] {
@@ -557,33 +554,33 @@ TEST_F(Dds, ASourceEndsSoonWhenItIsStopped) {
 }
 
 TEST_F(Dds, ASourceReportsWhatItWaitsFor) {
-  io::SourceOptions options;
+  input::SourceOptions options;
   options.open_timeout_s = 0.5;
   const std::string prefix = own_topic("silent");
   const std::string domain = std::getenv("ROS_DOMAIN_ID");
-  EXPECT_EQ(message_of([&] { ros2_sequence("ros2:" + prefix, options, {}); }),
+  EXPECT_EQ(message_of([&] { input::ros2_sequence("ros2:" + prefix, options, {}); }),
             "ros2:" + prefix + ": received nothing on " + prefix + "/left/image_rect and " + prefix +
                 "/right/image_rect within 0.5 s in domain " + domain +
                 ", expected sensor_msgs/msg/Image; no publisher on " + prefix + "/left/image_rect nor " +
                 prefix + "/right/image_rect (check ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY and the topic names)");
-  EXPECT_NE(message_of([&] { ros2_sequence("ros2:/a-b", options, {}); }).find("expected a ROS name"),
+  EXPECT_NE(message_of([&] { input::ros2_sequence("ros2:/a-b", options, {}); }).find("expected a ROS name"),
             std::string::npos);
 }
 
 TEST_F(Dds, ASourcePairsWithinTheSkew) {
   const std::string prefix = own_topic("skewed");
   const Camera camera(prefix, false, 4'000'000);
-  io::SourceOptions options;
+  input::SourceOptions options;
   options.open_timeout_s = 1;
   options.max_skew_ms = 1;
-  const std::string refused = message_of([&] { ros2_sequence("ros2:" + prefix, options, {}); });
+  const std::string refused = message_of([&] { input::ros2_sequence("ros2:" + prefix, options, {}); });
   EXPECT_NE(refused.find("differ by more than 0.001 s (--max-skew)"), std::string::npos) << refused;
   options.max_skew_ms = 5;
   options.calib = std::string(CAIRN_SOURCE_DIR) + "/data/samples/four_in_a_row/calib.txt";
-  const auto source = ros2_sequence("ros2:" + prefix, options, {});
+  const auto source = input::ros2_sequence("ros2:" + prefix, options, {});
   EXPECT_TRUE(source->next());
   EXPECT_TRUE(source->rig());
 }
 
 }  // namespace
-}  // namespace cairn::dds
+}  // namespace cairn::ros

@@ -48,12 +48,12 @@ double median(std::vector<double> values) {
 
 Measurement measure(const Drive& drive) {
   const fs::path folder = collection() / drive.folder;
-  const auto source = io::open_sequence(folder.string(), {});
-  io::Trajectory truth = io::load_trajectory(folder / drive.truth);
+  const auto source = input::open_sequence(folder.string(), {});
+  output::Trajectory truth = output::load_trajectory(folder / drive.truth);
   Config segmentation;
   segmentation.match.num_disparities = source->disparities().value_or(segmentation.match.num_disparities);
-  const std::unique_ptr<io::MotionPriors> wheels =
-      drive.by_wheels ? io::load_odometry(folder / "odometry.csv", folder) : nullptr;
+  const std::unique_ptr<input::MotionPriors> wheels =
+      drive.by_wheels ? input::load_odometry(folder / "odometry.csv", folder) : nullptr;
 
   Measurement all;
   std::vector<TimedPose> ours;

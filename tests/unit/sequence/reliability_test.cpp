@@ -213,23 +213,23 @@ TEST(LaserScans, AreReadWithTheirMounting) {
       folder.with("scan.csv",
                   "# laser_in_level_camera_m: 0 0.75 -0.1\n"
                   "t_s,angle_min,angle_increment,r0,r1,r2\n0.1,-0.5,0.5,1.5,inf,\n0.2,-0.5,0.5,1,2,3\n");
-  const std::vector<LaserScan> scans = io::load_scans(path);
+  const std::vector<LaserScan> scans = input::load_scans(path);
   ASSERT_EQ(scans.size(), 2U);
   EXPECT_EQ(scans[0].stamp.ns, 100'000'000);
   EXPECT_EQ(scans[0].in_level_camera_m, (Point3{0, 0.75, -0.1}));
   EXPECT_FLOAT_EQ(scans[0].ranges_m[0], 1.5F);
   EXPECT_TRUE(std::isnan(scans[0].ranges_m[1]));
   EXPECT_TRUE(std::isnan(scans[0].ranges_m[2]));
-  EXPECT_EQ(io::scan_at(scans, {120'000'000}), scans.data());
-  EXPECT_EQ(io::scan_at(scans, {160'000'000}), &scans[1]);
-  EXPECT_EQ(io::scan_at(scans, {40'000'000}), nullptr);
+  EXPECT_EQ(input::scan_at(scans, {120'000'000}), scans.data());
+  EXPECT_EQ(input::scan_at(scans, {160'000'000}), &scans[1]);
+  EXPECT_EQ(input::scan_at(scans, {40'000'000}), nullptr);
 }
 
 TEST(LaserScans, EachRefusalHasAReason) {
   const TemporaryFolder folder;
   const std::string head = "t_s,angle_min,angle_increment,r0,r1\n";
   const auto refused = [&](const std::string& text) {
-    return refusal([&] { io::load_scans(folder.with("scan.csv", text)); });
+    return refusal([&] { input::load_scans(folder.with("scan.csv", text)); });
   };
   EXPECT_NE(refused("").find("expected a first line stamp,angle_min"), std::string::npos);
   EXPECT_NE(refused("a,b\n").find("found 'a,b'"), std::string::npos);

@@ -123,15 +123,15 @@ TEST(NormalisedError, CountsStandardDeviations) {
 TEST(TrajectoryError, EqualsKittisForTwoKnownSystems) {
   const fs::path folder = collection() / "real/sequences/anchors/kitti00";
   if (!fs::exists(folder)) GTEST_SKIP() << "no collection of sequences here (CAIRN_DATA)";
-  const io::Trajectory truth = io::load_trajectory(folder / "KITTI_00_gt.txt");
+  const output::Trajectory truth = output::load_trajectory(folder / "KITTI_00_gt.txt");
   EXPECT_FALSE(truth.has_stamps);
   const TrajectoryError orb =
-      trajectory_error(io::load_trajectory(folder / "KITTI_00_ORB.txt").poses, truth.poses);
+      trajectory_error(output::load_trajectory(folder / "KITTI_00_ORB.txt").poses, truth.poses);
   EXPECT_EQ(orb.compared, 4541);
   EXPECT_NEAR(100 * orb.t_rel, 0.70, 0.005);
   EXPECT_NEAR(100 * orb.r_rel_rad_per_m / kDegrees, 0.25, 0.005);
   const TrajectoryError sptam =
-      trajectory_error(io::load_trajectory(folder / "KITTI_00_SPTAM.txt").poses, truth.poses);
+      trajectory_error(output::load_trajectory(folder / "KITTI_00_SPTAM.txt").poses, truth.poses);
   EXPECT_NEAR(100 * sptam.t_rel, 1.49, 0.005);
   EXPECT_NEAR(100 * sptam.r_rel_rad_per_m / kDegrees, 0.56, 0.005);
 }

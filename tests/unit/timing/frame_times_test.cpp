@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace cairn::report {
+namespace cairn::timing {
 namespace {
 
 /// Grey-level difference of the two images at points that the disparity relates.
@@ -95,4 +95,4 @@ TEST(Statistics, APercentileIsTheLeastValueThatTheShareDoesNotExceed) {
 }
 
 }  // namespace
-}  // namespace cairn::report
+}  // namespace cairn::timing

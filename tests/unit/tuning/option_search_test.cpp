@@ -7,7 +7,7 @@
 #include <cmath>
 #include <lab/option_search.hpp>
 
-namespace cairn::report {
+namespace cairn::lab {
 namespace {
 
 const std::vector<Knob> kTwo{{"a", {"1", "2", "3"}}, {"b", {"1", "2", "3"}}};
@@ -55,4 +55,4 @@ TEST(SearchKnobs, AcceptsAStartOutsideTheValues) {
 }
 
 }  // namespace
-}  // namespace cairn::report
+}  // namespace cairn::lab
