@@ -70,7 +70,7 @@ std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>
     // A number with leading zeros is a frame number.
     const bool may_be = name.size() >= kMinDigits && name.front() != '0';
     const std::optional<Stamp> stamp = may_be ? parse_stamp(name) : std::nullopt;
-    if (!stamp || !std::all_of(name.begin(), name.end(), is_digit)) return std::nullopt;
+    if (!stamp || !std::all_of(name.begin(), name.end(), io::is_digit)) return std::nullopt;
     stamps.push_back(*stamp);
   }
   return stamps;
@@ -235,7 +235,7 @@ NumberedFiles files_of(const std::string& text) {
       continue;
     const std::string digits = name.substr(pattern->before.size(), name.size() - around);
     const bool is_padded = digits.size() == pattern->digits || digits.front() != '0';
-    const std::optional<std::size_t> number = is_padded ? whole<std::size_t>(digits) : std::nullopt;
+    const std::optional<std::size_t> number = is_padded ? io::whole<std::size_t>(digits) : std::nullopt;
     if (!number) continue;
     found.side.files.push_back(file);
     found.numbers.push_back(*number);

@@ -39,7 +39,7 @@ Point3 mounting_in(const fs::path& path, std::string_view text) {
 
 std::vector<LaserScan> load_scans(const fs::path& path) {
   constexpr std::size_t kBeforeRanges = 3;
-  const std::string text = io::read_file(path, kMaxLogBytes);
+  const std::string text = io::read_file(path, io::kMaxLogBytes);
   const std::vector<io::TextLine> lines = io::lines_of(text);
   const std::vector<std::string_view> header =
       lines.empty() ? std::vector<std::string_view>{} : io::fields_of(lines.front().text);

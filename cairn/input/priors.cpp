@@ -421,7 +421,7 @@ void find_bias(Gyroscope::Rows& rows, const std::vector<Vector3>& accelerations)
 
 /// The rotation in T_BS of an EuRoC sensor.yaml: from the sensor to the body.
 Pose body_from_sensor(const fs::path& path) {
-  const std::string text = io::read_file(path, kMaxTextBytes);
+  const std::string text = io::read_file(path, io::kMaxTextBytes);
   const std::size_t pose = text.find("T_BS");
   const std::size_t open = pose == std::string::npos ? pose : text.find('[', pose);
   const std::size_t close = open == std::string::npos ? open : text.find(']', open);
@@ -452,7 +452,7 @@ Pose camera_from_level(double pitch_deg, double roll_deg) {
 }
 
 std::unique_ptr<MotionPriors> load_odometry(const fs::path& path, const fs::path& source_folder) {
-  const std::string text = io::read_file(path, kMaxLogBytes);
+  const std::string text = io::read_file(path, io::kMaxLogBytes);
   const std::vector<io::TextLine> lines = io::lines_of(text);
   if (lines.empty()) throw Error(path.string() + ": contains no lines of numbers, expected odometry");
   const std::vector<std::string_view> fields = io::fields_of(lines.front().text);
@@ -470,7 +470,7 @@ std::unique_ptr<MotionPriors> load_odometry(const fs::path& path, const fs::path
 }
 
 std::unique_ptr<MotionPriors> load_imu(const fs::path& path, const Pose& camera_from_imu) {
-  const std::string text = io::read_file(path, kMaxLogBytes);
+  const std::string text = io::read_file(path, io::kMaxLogBytes);
   Gyroscope::Rows rows;
   std::vector<Vector3> accelerations;
   std::vector<std::string> names;

@@ -52,7 +52,7 @@ class FileSequence : public SourceSequence {
     const std::optional<fs::path> found = first.calib ? first.calib : list_.calib;
     each_has_own_ = options.calib.empty() && first.calib && !list_.is_raw && !options.rectify;
     calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw);
-    if (each_has_own_) calib_bytes_ = io::read_file(calibration_.path, kMaxTextBytes);
+    if (each_has_own_) calib_bytes_ = io::read_file(calibration_.path, io::kMaxTextBytes);
     first_ = load(first);
     calibration_.suit(first_->left.gray.size());
     if (auto raw = calibration_.remark_on_raw(first.name)) remarks_.push_back(std::move(*raw));
@@ -97,7 +97,7 @@ class FileSequence : public SourceSequence {
 
   void check_calibration(const ListedFrame& files) {
     if (!files.calib || *files.calib == calibration_.path ||
-        io::read_file(*files.calib, kMaxTextBytes) == calib_bytes_)
+        io::read_file(*files.calib, io::kMaxTextBytes) == calib_bytes_)
       return;
     if (!is_same(io::load_calibration(*files.calib, list_.grey_cameras).rig, calibration_.says.rig)) {
       throw Error(files.calib->string() + ": differs from the calibration " + calibration_.path.string() +
@@ -182,7 +182,7 @@ FrameRange parse_frame_range(std::string_view text) {
   FrameRange range;
   const std::size_t first_colon = text.find(':');
   if (first_colon == std::string_view::npos) {
-    range.last_excluded = whole<std::size_t>(text);
+    range.last_excluded = io::whole<std::size_t>(text);
     if (!range.last_excluded || *range.last_excluded == 0) refuse();
     return range;
   }
@@ -190,15 +190,15 @@ FrameRange parse_frame_range(std::string_view text) {
   const std::string_view first = text.substr(0, first_colon);
   const std::string_view last = text.substr(first_colon + 1, second_colon - first_colon - 1);
   if (!first.empty()) {
-    if (!whole<std::size_t>(first)) refuse();
-    range.first = *whole<std::size_t>(first);
+    if (!io::whole<std::size_t>(first)) refuse();
+    range.first = *io::whole<std::size_t>(first);
   }
   if (!last.empty()) {
-    range.last_excluded = whole<std::size_t>(last);
+    range.last_excluded = io::whole<std::size_t>(last);
     if (!range.last_excluded || *range.last_excluded <= range.first) refuse();
   }
   if (second_colon < text.size()) {
-    const auto step = whole<std::size_t>(text.substr(second_colon + 1));
+    const auto step = io::whole<std::size_t>(text.substr(second_colon + 1));
     if (!step || *step == 0) refuse();
     range.step = *step;
   }

@@ -16,14 +16,14 @@ namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
-using output::Json = nlohmann::json;
+using Json = nlohmann::json;
 
 constexpr std::int64_t kMaxId = 65'535;
 constexpr std::int64_t kMaxFrames = 10'000'000;
 
-output::Json load_json(const fs::path& path) {
+Json load_json(const fs::path& path) {
   constexpr std::size_t kMax = std::size_t{64} << 20;
-  std::optional<output::Json> json;
+  std::optional<Json> json;
   try {
     json = output::parsed_json(io::read_file(path, kMax));
   } catch (const Error& error) {
@@ -36,13 +36,13 @@ output::Json load_json(const fs::path& path) {
 
 /// Calls take(line) for each entry of a list, and prefixes errors with the file's name.
 template <class Take>
-void each_in(const fs::path& path, const output::Json& json, const char* key, const Take& take) {
+void each_in(const fs::path& path, const Json& json, const char* key, const Take& take) {
   try {
-    const output::JsonLine io::whole(json);
-    const output::Json& list = whole.at(key);
+    const output::JsonLine whole(json);
+    const Json& list = whole.at(key);
     if (list.is_null()) return;
     if (!list.is_array()) whole.refuse(key, "a list");
-    for (const output::Json& one : list) take(output::JsonLine(one));
+    for (const Json& one : list) take(output::JsonLine(one));
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }

@@ -71,8 +71,7 @@ SequenceRun::SequenceRun(const input::Sequence& source, std::string source_name,
 
 TrackedFrame SequenceRun::next(const input::SequenceFrame& frame) {
   std::optional<MotionPrior> prior;
-  if (priors_ && has_begun_)
-    prior = priors_->between(before_, frame.stamp, input::camera_from_level(pose_before_));
+  if (priors_ && has_begun_) prior = priors_->between(before_, frame.stamp, camera_from_level(pose_before_));
   if (frame.after_gap) follower_.forget();
   TrackedFrame step =
       follower_.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp, prior,

@@ -39,7 +39,7 @@ Rgb from_hsv(float hue, float saturation, float value) {  // all 0 … 1
   return {channel(5), channel(3), channel(1)};
 }
 
-std::string io::number_text(const char* format, float value) {
+std::string number_text(const char* format, float value) {
   std::array<char, 48> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, static_cast<double>(value));
   return buffer.data();
@@ -144,7 +144,7 @@ constexpr int kStripHeight = 24;
 /// The image with a colour legend below it.
 Image<Rgb> with_legend(Image<Rgb> picture, bool in_metres, bool has_floor, float brightened) {
   constexpr int kGap = 18;
-  Image<Rgb> io::whole({picture.width(), picture.height() + kStripHeight}, Rgb{15, 15, 15}, {});
+  Image<Rgb> whole({picture.width(), picture.height() + kStripHeight}, Rgb{15, 15, 15}, {});
   for (int y = 0; y < picture.height(); ++y) std::copy_n(picture.row(y), picture.width(), whole.row(y));
   const Rgb white{235, 235, 235};
   const int base = whole.height() - 8;
@@ -160,7 +160,7 @@ Image<Rgb> with_legend(Image<Rgb> picture, bool in_metres, bool has_floor, float
   entry(object_colour(ObjectId{1}), std::string("object, id: ") + (in_metres ? "distance" : "disparity"));
   if (has_floor) entry(kFloorTint, "floor");
   entry(Rgb{110, 110, 110}, "no object");
-  if (brightened > 1) entry(std::nullopt, "brightened " + io::number_text("%.1f x", brightened));
+  if (brightened > 1) entry(std::nullopt, "brightened " + number_text("%.1f x", brightened));
   return whole;
 }
 
@@ -202,10 +202,10 @@ Rgb colour_of(float disparity, DisparitySpan span, const std::array<Rgb, 256>& c
 }
 
 std::string scale_text(float disparity, const std::optional<StereoRig>& rig) {
-  std::string px = io::number_text("%.1f px", disparity);
+  std::string px = number_text("%.1f px", disparity);
   if (!rig) return px;
   const auto point = rig->point_in_camera_m(0, 0, disparity);
-  return px + (point ? io::number_text("  %.2f m", point->z) : "");
+  return px + (point ? number_text("  %.2f m", point->z) : "");
 }
 
 constexpr int kLegendWidth = 190;
@@ -241,8 +241,8 @@ void draw_legend(Image<Rgb>& canvas, int left, const DisparityMap& map, Disparit
     }
   }
   const auto percent = [&](std::int64_t count) {
-    return io::number_text("  %.1f %%",
-                           100 * static_cast<float>(count) / static_cast<float>(map.reject.size().area()));
+    return number_text("  %.1f %%",
+                       100 * static_cast<float>(count) / static_cast<float>(map.reject.size().area()));
   };
   int y = bar_top + bar_height + kLegendRow;
   write("valid" + percent(valid), {left + 10, y});
@@ -372,8 +372,8 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
   std::vector<Label> names;
   for (const Object& object : objects.list) {
     const std::string distance = object.position_in_camera_m
-                                     ? io::number_text("%.2f m", object.position_in_camera_m->z)
-                                     : io::number_text("%.1f px", object.disparity_px);
+                                     ? number_text("%.2f m", object.position_in_camera_m->z)
+                                     : number_text("%.1f px", object.disparity_px);
     const Rect box = object.box_px;
     const Image<std::uint8_t> mask = mask_of(View<const ObjectId>(objects.labels), object.id, box);
     const LabelPlace place = label_place(mask);

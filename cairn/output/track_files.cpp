@@ -163,7 +163,7 @@ bool each_json(const fs::path& path, const std::function<void(const Json&, std::
   return is_cut_off;
 }
 
-std::int64_t io::number_in(const std::string& word, const char* what, std::int64_t least, std::int64_t most) {
+std::int64_t number_in(const std::string& word, const char* what, std::int64_t least, std::int64_t most) {
   const std::string expected = std::string(what) + " is `" + word.substr(0, kMaxShown) +
                                "`, expected a whole number from " + std::to_string(least) + " to " +
                                std::to_string(most);
@@ -210,11 +210,11 @@ TrackFile load_mots(const fs::path& path) {
     const std::vector<std::string> word = words_of(text);
     if (word.size() != 6)
       throw Error("found `" + text.substr(0, kMaxShown) + "`, expected `frame id class height width rle`");
-    const std::int64_t frame = io::number_in(word[0], "the frame", 0, kMaxOfMots);
-    const std::int64_t id = io::number_in(word[1], "the id", 1, (std::int64_t{1} << 31) - 1);
-    const std::int64_t kind = io::number_in(word[2], "the class", 0, std::int64_t{1} << 31);
-    const auto height = static_cast<int>(io::number_in(word[3], "the height", 1, kMaxSide));
-    const auto width = static_cast<int>(io::number_in(word[4], "the width", 1, kMaxSide));
+    const std::int64_t frame = number_in(word[0], "the frame", 0, kMaxOfMots);
+    const std::int64_t id = number_in(word[1], "the id", 1, (std::int64_t{1} << 31) - 1);
+    const std::int64_t kind = number_in(word[2], "the class", 0, std::int64_t{1} << 31);
+    const auto height = static_cast<int>(number_in(word[3], "the height", 1, kMaxSide));
+    const auto width = static_cast<int>(number_in(word[4], "the width", 1, kMaxSide));
     TrackRecord track;
     track.id = TrackId{id};
     track.mask = io::Rle{{width, height}, word[5]};

@@ -127,7 +127,7 @@ Trajectory load_folder(const fs::path& folder) {
       names.push_back(it->path().filename().string());
   }
   if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
-  std::sort(names.begin(), names.end(), in_natural_order);
+  std::sort(names.begin(), names.end(), io::in_natural_order);
   if (names.empty()) throw Error(folder.string() + ": no frame in this folder contains a pose.txt");
   Trajectory all;
   for (const std::string& name : names) all.poses.push_back({{}, load_pose(folder / name / "pose.txt")});
@@ -151,7 +151,7 @@ Trajectory load_folder(const fs::path& folder) {
 }  // namespace
 
 Pose load_pose(const fs::path& path) {
-  const std::string text = io::read_file(path, kMaxTextBytes);
+  const std::string text = io::read_file(path, io::kMaxTextBytes);
   std::vector<double> values;
   for (const io::TextLine& line : io::lines_of(text)) {
     for (const std::string_view field : io::fields_of(line.text)) {

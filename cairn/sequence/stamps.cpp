@@ -41,7 +41,7 @@ constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kMaxNs = std::numeric_limits<std::int64_t>::max() / 2;
 
 bool is_digits(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), is_digit);
+  return !text.empty() && std::all_of(text.begin(), text.end(), io::is_digit);
 }
 
 std::optional<Stamp> stamp_of(std::int64_t seconds, std::int64_t ns) {
@@ -54,7 +54,7 @@ std::int64_t fraction_ns(std::string_view digits) {
   constexpr std::size_t kDigits = 9;
   std::string nine(digits.substr(0, kDigits));
   nine.resize(kDigits, '0');
-  return whole<std::int64_t>(nine).value_or(0);
+  return io::whole<std::int64_t>(nine).value_or(0);
 }
 
 /// Parses decimals without a double, whose resolution for current stamps is 100 ns.
@@ -67,7 +67,7 @@ std::optional<Stamp> decimal(std::string_view text) {
   if (!is_digits(seconds) && !is_digits(fraction)) return std::nullopt;
   if (!(seconds.empty() || is_digits(seconds)) || !(fraction.empty() || is_digits(fraction)))
     return std::nullopt;
-  const auto count = seconds.empty() ? std::optional<std::int64_t>(0) : whole<std::int64_t>(seconds);
+  const auto count = seconds.empty() ? std::optional<std::int64_t>(0) : io::whole<std::int64_t>(seconds);
   if (!count) return std::nullopt;
   const std::optional<Stamp> stamp = stamp_of(*count, fraction_ns(fraction));
   return stamp && negative ? Stamp{-stamp->ns} : stamp;
@@ -85,7 +85,7 @@ std::optional<Stamp> date(std::string_view text) {
   const std::string_view fraction = text.substr(kForm.size());
   if (!fraction.empty() && (fraction.front() != '.' || !is_digits(fraction.substr(1)))) return std::nullopt;
   const auto number = [&](std::size_t at, std::size_t length) {
-    return whole<unsigned>(text.substr(at, length)).value_or(0);
+    return io::whole<unsigned>(text.substr(at, length)).value_or(0);
   };
   const std::chrono::year_month_day day{std::chrono::year(static_cast<int>(number(0, 4))),
                                         std::chrono::month(number(5, 2)), std::chrono::day(number(8, 2))};
@@ -109,14 +109,14 @@ std::optional<Stamp> date(std::string_view text) {
 
 std::optional<Stamp> parse_seconds(std::string_view text) {
   if (const std::optional<Stamp> stamp = decimal(text)) return stamp;
-  const std::optional<double> seconds = whole<double>(text);
+  const std::optional<double> seconds = io::whole<double>(text);
   if (!seconds || !(std::abs(*seconds) * static_cast<double>(kNsPerSecond) < static_cast<double>(kMaxNs)))
     return std::nullopt;
   return Stamp{std::llround(*seconds * static_cast<double>(kNsPerSecond))};
 }
 
 std::optional<Stamp> parse_stamp(std::string_view text) {
-  if (const std::optional<std::int64_t> ns = whole<std::int64_t>(text)) {
+  if (const std::optional<std::int64_t> ns = io::whole<std::int64_t>(text)) {
     if (*ns > kMaxNs || *ns < -kMaxNs) return std::nullopt;
     return Stamp{*ns};
   }
@@ -133,7 +133,7 @@ std::string stamp_text(Stamp stamp) {
 }
 
 std::vector<Stamp> load_stamps(const fs::path& path) {
-  const std::string text = io::read_file(path, kMaxLogBytes);
+  const std::string text = io::read_file(path, io::kMaxLogBytes);
   std::vector<Stamp> stamps;
   // One line with a decimal point means that all are seconds: "5" before "5.1" is not 5 ns.
   const std::vector<io::TextLine> lines = io::lines_of(text);
@@ -150,11 +150,11 @@ std::vector<Stamp> load_stamps(const fs::path& path) {
 }
 
 std::vector<NamedStamp> load_named_stamps(const fs::path& path) {
-  const std::string text = io::read_file(path, kMaxLogBytes);
+  const std::string text = io::read_file(path, io::kMaxLogBytes);
   std::vector<NamedStamp> stamps;
   for (const io::TextLine& line : io::lines_of(text)) {
     const std::vector<std::string_view> fields = io::fields_of(line.text);
-    const std::optional<std::int64_t> ns = whole<std::int64_t>(fields.front());
+    const std::optional<std::int64_t> ns = io::whole<std::int64_t>(fields.front());
     if (!ns) {
       const bool is_seconds = parse_seconds(fields.front()).has_value();
       throw Error(io::place(path, line.number) + ": found " + io::quoted(fields.front()) +
@@ -168,7 +168,7 @@ std::vector<NamedStamp> load_named_stamps(const fs::path& path) {
 }
 
 std::optional<std::vector<FrameStamp>> load_frame_stamps(const fs::path& path) {
-  const std::string text = io::read_file(path, kMaxLogBytes);
+  const std::string text = io::read_file(path, io::kMaxLogBytes);
   const std::vector<io::TextLine> lines = io::lines_of(text);
   if (lines.empty()) return std::nullopt;
   const std::vector<std::string_view> header = io::fields_of(lines.front().text);
@@ -184,7 +184,7 @@ std::optional<std::vector<FrameStamp>> load_frame_stamps(const fs::path& path) {
     if (!stamp)
       throw Error(io::place(path, lines[i].number) + ": found " + io::quoted(field) + " as t_s, expected s");
     stamps.push_back({{}, *stamp});
-    if (frame < fields.size()) stamps.back().frame = whole<std::size_t>(fields[frame]);
+    if (frame < fields.size()) stamps.back().frame = io::whole<std::size_t>(fields[frame]);
   }
   return stamps;
 }
@@ -194,7 +194,7 @@ std::vector<Stamp> stamps_by_line(const fs::path& path, const std::vector<std::s
   if (all.size() == names.size()) return all;
   std::vector<Stamp> some;
   for (const std::string& name : names) {
-    const std::optional<std::size_t> number = whole<std::size_t>(name);
+    const std::optional<std::size_t> number = io::whole<std::size_t>(name);
     if (!number || *number >= all.size()) refuse_count(path, all.size(), names.size());
     some.push_back(all[*number]);
   }
@@ -209,7 +209,7 @@ std::vector<Stamp> stamps_by_frame(const fs::path& path, const std::vector<Frame
   }
   std::vector<Stamp> stamps;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto found = by_frame.find(whole<std::size_t>(names[i]).value_or(i));
+    const auto found = by_frame.find(io::whole<std::size_t>(names[i]).value_or(i));
     if (found != by_frame.end()) stamps.push_back(found->second);
   }
   if (stamps.size() == names.size()) return stamps;

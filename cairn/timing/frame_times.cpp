@@ -18,7 +18,7 @@
 namespace cairn::timing {
 namespace {
 
-using lab::Clock = std::chrono::steady_clock;
+using Clock = std::chrono::steady_clock;
 
 double process_ms() {
   return now_ms(CLOCK_PROCESS_CPUTIME_ID);
@@ -47,9 +47,9 @@ struct Elapsed {
 template <class Work>
 Elapsed timed(const Work& work) {
   const double cpu = process_ms();
-  const auto wall = lab::Clock::now();
+  const auto wall = Clock::now();
   work();
-  const std::chrono::duration<double, std::milli> elapsed = lab::Clock::now() - wall;
+  const std::chrono::duration<double, std::milli> elapsed = Clock::now() - wall;
   return {elapsed.count(), process_ms() - cpu};
 }
 
@@ -148,11 +148,11 @@ FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& r
     all.stages.push_back({name, for_disparity.contains(name), {}});
 
   std::vector<Peer> peers = prepare(matchers, pair, config.match);
-  const auto start = lab::Clock::now();
+  const auto start = Clock::now();
   const auto in_time = [&] {
     return all.frames() < least ||
            (all.frames() < limits.frames &&
-            std::chrono::duration<double>(lab::Clock::now() - start).count() < limits.seconds);
+            std::chrono::duration<double>(Clock::now() - start).count() < limits.seconds);
   };
   while (in_time()) {
     const Elapsed frame = run();

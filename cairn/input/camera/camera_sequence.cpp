@@ -263,7 +263,7 @@ class CameraSequence : public SourceSequence {
     note("left image without a right one", unpaired[0], "before " + before);
     note("right image without a left one", unpaired[1], "before " + before);
     if (now.reconnects > 0) note_once("was lost and came back", text_of_times(now.reconnects));
-    if (pairs > 0) note_once("the two cameras are not synchronised", io::text_of(skew));
+    if (pairs > 0) note_once("the two cameras are not synchronised", text_of(skew));
     if (has_ended_) note_once("the pipeline ended", "after " + std::to_string(count_) + " frames");
   }
 
@@ -296,7 +296,7 @@ class CameraSequence : public SourceSequence {
     return times == 1 ? "once" : std::to_string(times) + " times";
   }
 
-  static std::string io::text_of(const StampPairer::Skew& skew) {
+  static std::string text_of(const StampPairer::Skew& skew) {
     std::string words =
         formatted("right images are %.1f to %.1f ms later than left ones", skew.least_ms, skew.most_ms);
     if (skew.drift_over_s >= kMinDriftSeconds) words += formatted(", drift %.0f ppm", skew.drift_ppm);

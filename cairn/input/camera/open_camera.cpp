@@ -34,7 +34,7 @@ bool is_rtsp(std::string_view source) {
   return source.starts_with("rtsp://") || source.starts_with("rtsps://");
 }
 
-std::optional<double> io::number_in(std::string_view text) {
+std::optional<double> number_in(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
@@ -43,7 +43,7 @@ std::optional<double> io::number_in(std::string_view text) {
 
 int side_in(const std::string& source, const std::string& key, const std::string& value) {
   constexpr double kMax = 32768;
-  const std::optional<double> number = io::number_in(value);
+  const std::optional<double> number = number_in(value);
   if (!number || *number < 1 || *number > kMax || *number != static_cast<int>(*number))
     throw Error(source + ": " + key + ": found '" + value + "', expected 1 ... 32768 px");
   return static_cast<int>(*number);
@@ -59,7 +59,7 @@ void set_key(V4l2Request& request, std::string& layout, const std::string& sourc
   } else if (key == "h") {
     request.size.height = side_in(source, key, value);
   } else if (key == "fps") {
-    const std::optional<double> fps = io::number_in(value);
+    const std::optional<double> fps = number_in(value);
     if (!fps || !(*fps > 0 && *fps <= 1000))
       throw Error(source + ": fps: found '" + value + "', expected a rate up to 1000 Hz");
     request.fps = *fps;

@@ -241,7 +241,7 @@ class V4l2Camera : public Camera {
       throw Error("gives the format " + name_of(pixels.pixelformat) + ", expected " +
                   std::string(format_->name));
     }
-    if (pixels.width == 0 || pixels.height == 0 || pixels.width > kMaxPixelsPerSide ||
+    if (pixels.width == 0 || pixels.height == 0 || pixels.width > io::kMaxPixelsPerSide ||
         pixels.height > kMaxPixelsPerSide) {
       throw Error("gives " + std::to_string(pixels.width) + "x" + std::to_string(pixels.height) +
                   ", expected sides of 1 ... " + std::to_string(kMaxPixelsPerSide));

@@ -278,8 +278,7 @@ class TwoVideos : public VideoSequence {
       const std::size_t index = pairs_++;
       if (options().frames.is_past(index)) return std::nullopt;
       if (options().frames.contains(index))
-        return NextFrame{index, pair->left.stamp,
-                         io::pair_of(pair->left.value.image, pair->right.value.image)};
+        return NextFrame{index, pair->left.stamp, pair_of(pair->left.value.image, pair->right.value.image)};
     }
     // The rest of the longer one has no counterpart.
     pairing_.leave_all(reading_on);
@@ -288,8 +287,8 @@ class TwoVideos : public VideoSequence {
     return std::nullopt;
   }
 
-  std::optional<io::LoadedPair> io::pair_of(const std::optional<cv::Mat>& left,
-                                            const std::optional<cv::Mat>& right) {
+  std::optional<io::LoadedPair> pair_of(const std::optional<cv::Mat>& left,
+                                        const std::optional<cv::Mat>& right) {
     if (!left || !right) return std::nullopt;
     if (left->size() != right->size()) {
       throw Error(videos_[1].path().string() + ": is " + text(Size{right->cols, right->rows}) +

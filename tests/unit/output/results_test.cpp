@@ -28,7 +28,7 @@ using namespace std::string_literals;
 
 constexpr Size kSize{60, 40};
 
-std::string io::text_of(const fs::path& path) {
+std::string text_of(const fs::path& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
   return text.str();
@@ -360,13 +360,13 @@ TEST_F(ResultFolder, HasDepthAndGridOnRequest) {
   EXPECT_EQ(depth.ids(5, 5), 6000);
   EXPECT_EQ(depth.ids(0, 0), 0);
   EXPECT_EQ(depth.ids(1, 0), 0);
-  const std::string npy = io::text_of(root_ / "with" / "depth.npy");
+  const std::string npy = text_of(root_ / "with" / "depth.npy");
   ASSERT_EQ(npy.size() % 64, static_cast<std::size_t>(kSize.area()) * 4 % 64);
   EXPECT_EQ(npy.substr(0, 6), "\x93NUMPY");
   EXPECT_NE(npy.find("'shape': (40, 60)"), std::string::npos);
-  const std::string pgm = io::text_of(root_ / "with" / "grid.pgm");
+  const std::string pgm = text_of(root_ / "with" / "grid.pgm");
   EXPECT_EQ(pgm.substr(0, 15), "P5\n120 240\n255\n"s.substr(0, 15));
-  EXPECT_NE(io::text_of(root_ / "with" / "grid.yaml").find("resolution: 0.05\norigin: [0.0, -6.0, 0.0]"),
+  EXPECT_NE(text_of(root_ / "with" / "grid.yaml").find("resolution: 0.05\norigin: [0.0, -6.0, 0.0]"),
             std::string::npos);
   EXPECT_TRUE(names(root_ / "with").count("space.png"));
 
