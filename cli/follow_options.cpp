@@ -116,8 +116,8 @@ std::vector<OptionInfo> sequence_options(const ConfigOptions& config) {
 }
 
 std::string control_line(const ControlEvent& event) {
-  return "steadier setting: " + event.arm.option + "=" + event.arm.value +
-         (event.is_set ? ", set (was " : " (now ") + event.before + "), by " + percent(event.lead);
+  return "steadier setting: " + event.candidate.option + "=" + event.candidate.value +
+         (event.is_set ? ", set (was " : " (now ") + event.before + "), by " + percent(event.gain);
 }
 
 }  // namespace cairn::cli

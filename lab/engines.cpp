@@ -51,9 +51,6 @@ const Engine& engine_named(std::string_view name) {
 
 namespace {
 
-using MarkdownTable;
-using text_of;
-
 struct Settings {
   std::filesystem::path data = "../shared/data";
   int repeats = 15;
@@ -100,7 +97,7 @@ Trials race(const Scene& scene, const std::set<std::string_view>& names, Clock c
   return trials;
 }
 
-std::string text_of(const Goal& goal) {
+std::string goal_text(const Goal& goal) {
   std::string words;
   if (goal.at_least > 0) words += "≥ " + text_of("%.2f", goal.at_least);
   if (goal.at_most < std::numeric_limits<double>::infinity()) {
@@ -118,7 +115,7 @@ void add_row(MarkdownTable& table, const Comparison& row, const Scene& scene, co
   table.add({std::string(row.what), scene.name + " " + scene.extent(), std::string(row.peer),
              text_of("%.2f", peer.least()), text_of("%.2f", median(peer.times)),
              text_of("%.2f", ours.least()), text_of("%.2f", median(ours.times)), text_of("%.2f", ratio),
-             text_of(row.goal), aims ? (met ? "yes" : "**no**") : "–"});
+             goal_text(row.goal), aims ? (met ? "yes" : "**no**") : "–"});
 }
 
 std::vector<Comparison> rows_for(const Scene& scene, Clock clock, const std::string& only) {
@@ -182,7 +179,7 @@ void run(const Settings& settings) {
 }  // namespace cairn::lab
 
 int main(int argc, char** argv) try {
-  cairn::engines::run(cairn::engines::parse({argv + 1, argv + argc}));
+  cairn::lab::run(cairn::lab::parse({argv + 1, argv + argc}));
 } catch (const cairn::Error& error) {
   std::fprintf(stderr, "engines: %s\n", error.what());
   return 2;

@@ -69,10 +69,6 @@ void operator delete(void* data, std::size_t, std::align_val_t alignment) noexce
 namespace cairn::lab {
 namespace {
 
-using MarkdownTable;
-using percent;
-using text_of;
-
 /// The matching stages of a configuration, as run by segment(): with left-right check and uniqueness if they
 /// are on.
 DisparityMap match_and_check(const StereoPair& pair, const Config& config, const Exec& exec) {

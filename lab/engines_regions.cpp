@@ -24,9 +24,6 @@
 namespace cairn::lab {
 namespace {
 
-using MarkdownTable;
-using text_of;
-
 Exec pooled(int threads) {
   Exec exec = Exec::with_threads(threads);
   exec.pool = Pool::make();

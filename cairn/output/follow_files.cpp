@@ -125,10 +125,10 @@ Json track_json(const Track& track, const TrackedFrame& step, const TrackLabels&
 }
 
 Json control_json(const ControlEvent& event) {
-  return {{"option", event.arm.option},
+  return {{"option", event.candidate.option},
           {"from", event.before},
-          {"to", event.arm.value},
-          {"lead", event.lead},
+          {"to", event.candidate.value},
+          {"lead", event.gain},
           {"set", event.is_set}};
 }
 
@@ -164,10 +164,10 @@ std::vector<Json> event_lines(const TrackedFrame& step, const std::vector<Landma
   if (step.control) {
     const ControlEvent& event = *step.control;
     Json& j = lines.emplace_back(event_of(step, event.is_set ? "option_set" : "option_better"));
-    j["option"] = event.arm.option;
+    j["option"] = event.candidate.option;
     j["from"] = event.before;
-    j["to"] = event.arm.value;
-    j["lead"] = event.lead;
+    j["to"] = event.candidate.value;
+    j["lead"] = event.gain;
   }
   if (becomes_unreliable(step)) {
     Json& j = lines.emplace_back(event_of(step, "unreliable"));

@@ -22,9 +22,9 @@ bool is_valid(Config config, const std::string& option, const std::string& value
   }
 }
 
-/// Gains, relative to the mean of the setting in force, that let an arm stay in the search and win it.
-double least_lead(const OptionCandidate& arm, double lead_percent) {
-  return arm.restores ? 0 : lead_percent / 100;
+/// Gains, relative to the mean of the setting in force, that let a candidate stay in the search and win it.
+double min_gain(const OptionCandidate& candidate, double min_gain_percent) {
+  return candidate.restores ? 0 : min_gain_percent / 100;
 }
 
 }  // namespace
@@ -44,17 +44,18 @@ std::vector<OptionCandidate> differences(const Config& config, const Config& kno
   return differ;
 }
 
-std::vector<OptionCandidate> restoring_arms(const Config& config, const Config& known, Size image) {
-  std::vector<OptionCandidate> arms = differences(config, known);
-  std::erase_if(arms, [&](const OptionCandidate& arm) {
-    return arm.option == "match.min_disparity" || arm.option.starts_with("space.") ||
-           (arm.option == "match.num_disparities" &&
+std::vector<OptionCandidate> restoring_candidates(const Config& config, const Config& known, Size image) {
+  std::vector<OptionCandidate> candidates = differences(config, known);
+  std::erase_if(candidates, [&](const OptionCandidate& candidate) {
+    return candidate.option == "match.min_disparity" || candidate.option.starts_with("obstacles.") ||
+           (candidate.option == "match.num_disparities" &&
             known.match.num_disparities < config.match.num_disparities) ||
-           (arm.option == "ground.source" && config.ground.source != GroundSource::off) ||
-           !is_valid(config, arm.option, arm.value, image);
+           (candidate.option == "ground.source" && config.ground.source != GroundSource::off) ||
+           !is_valid(config, candidate.option, candidate.value, image);
   });
-  for (OptionCandidate& arm : arms) arm.restores = arm.option != "match.num_disparities";
-  return arms;
+  for (OptionCandidate& candidate : candidates)
+    candidate.restores = candidate.option != "match.num_disparities";
+  return candidates;
 }
 
 Config nearest_preset(const Config& config) {
@@ -64,13 +65,13 @@ Config nearest_preset(const Config& config) {
                                    [&](const Config& preset) { return differences(config, preset).size(); });
 }
 
-std::vector<OptionCandidate> arms_of(const Config& config, Size image, float step) {
+std::vector<OptionCandidate> option_candidates(const Config& config, Size image, float step) {
   const std::vector<OptionInfo> known = active_options(config);
-  std::vector<OptionCandidate> arms;
+  std::vector<OptionCandidate> candidates;
   const auto add = [&](const std::string& option, const std::string& value) {
     const auto now = std::ranges::find(known, option, &OptionInfo::name);
     if (now == known.end() || now->value == value) return;
-    if (is_valid(config, option, value, image)) arms.push_back({option, value});
+    if (is_valid(config, option, value, image)) candidates.push_back({option, value});
   };
   const auto scale = [&](const std::string& option, float value, float by) {
     if (value > 0) add(option, option_walk::write(value * by));
@@ -92,20 +93,20 @@ std::vector<OptionCandidate> arms_of(const Config& config, Size image, float ste
   }
   add("background.max_walls", config.background.max_walls > 0 ? "0" : "3");
   add("match.method", config.match.method == MatchMethod::window ? "semi_global" : "window");
-  return arms;
+  return candidates;
 }
 
-Lead lead_of(const CandidateScore& score) {
+Gain gain_of(const CandidateScore& score) {
   constexpr double kOneSided95 = 1.645;
   constexpr double kMin = 1e-3;  // bounds the divisor for a configuration that finds nothing
-  const std::size_t count = std::min(score.of_arm.size(), score.of_present.size());
+  const std::size_t count = std::min(score.of_candidate.size(), score.of_present.size());
   if (count < 2) return {};
   const auto n = static_cast<double>(count);
   double sum = 0;
   double squares = 0;
   double present = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double more = double{score.of_arm[i]} - double{score.of_present[i]};
+    const double more = double{score.of_candidate[i]} - double{score.of_present[i]};
     sum += more;
     squares += more * more;
     present += double{score.of_present[i]};
@@ -116,22 +117,22 @@ Lead lead_of(const CandidateScore& score) {
   return {mean / base, (mean - kOneSided95 * std::sqrt(variance)) / base};
 }
 
-std::vector<CandidateScore> halved(std::vector<CandidateScore> round, float lead_percent) {
+std::vector<CandidateScore> halved(std::vector<CandidateScore> round, float min_gain_percent) {
   const std::size_t most = (round.size() + 1) / 2;
   std::ranges::stable_sort(round, std::ranges::greater{},
-                           [](const CandidateScore& s) { return lead_of(s).mean; });
+                           [](const CandidateScore& s) { return gain_of(s).mean; });
   if (round.size() > 1) round.resize(most);
   std::erase_if(round, [&](const CandidateScore& s) {
-    const double lead = lead_of(s).mean;
-    return lead <= 0 || lead < least_lead(s.arm, lead_percent) / 2;
+    const double gain = gain_of(s).mean;
+    return gain <= 0 || gain < min_gain(s.candidate, min_gain_percent) / 2;
   });
   return round;
 }
 
 bool is_better(const CandidateScore& score, const ControlConfig& config) {
-  const Lead lead = lead_of(score);
-  return static_cast<int>(score.of_arm.size()) >= config.window &&
-         lead.mean >= least_lead(score.arm, config.lead) && lead.low > 0;
+  const Gain gain = gain_of(score);
+  return static_cast<int>(score.of_candidate.size()) >= config.window &&
+         gain.mean >= min_gain(score.candidate, config.min_gain) && gain.low > 0;
 }
 
 }  // namespace cairn

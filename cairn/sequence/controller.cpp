@@ -9,11 +9,11 @@
 namespace cairn {
 namespace {
 
-constexpr int kFirstSamples = 2;  // frames of the first round of many arms
-constexpr int kMaxWindows = 4;    // after as many windows without a certain lead an arm is dropped
+constexpr int kFirstSamples = 2;  // frames of the first round of many candidates
+constexpr int kMaxWindows = 4;    // after as many windows without a certain gain a candidate is dropped
 constexpr float kMinStep = 2;
 constexpr float kMaxStep = 8;
-constexpr double kObvious = 0.5;  // a lead large enough to skip further rounds
+constexpr double kObvious = 0.5;  // a gain large enough to skip further rounds
 
 }  // namespace
 
@@ -21,35 +21,35 @@ Controller::Controller(const FollowConfig& start)
     : control_(start.control),
       start_(start.segmentation),
       preset_(nearest_preset(start.segmentation)),
-      since_report_(start.control.hold) {}
+      since_report_(start.control.cooldown) {}
 
 void Controller::begin_search(const Config& config, Size image) {
-  std::vector<OptionCandidate> arms = restoring_arms(config, preset_, image);
-  is_restoring_ = !is_restoring_ && !arms.empty();
+  std::vector<OptionCandidate> candidates = restoring_candidates(config, preset_, image);
+  is_restoring_ = !is_restoring_ && !candidates.empty();
   if (!is_restoring_) {
-    arms = arms_of(config, image, step_);
+    candidates = option_candidates(config, image, step_);
     // A change that was an improvement is undone only for a clear one.
     for (const OptionCandidate& back : differences(config, start_)) {
-      if (std::ranges::find(arms, back) == arms.end()) arms.push_back(back);
+      if (std::ranges::find(candidates, back) == candidates.end()) candidates.push_back(back);
     }
   }
   round_.clear();
-  for (const OptionCandidate& arm : arms) {
+  for (const OptionCandidate& candidate : candidates) {
     const auto is_it = [&](const OptionCandidate& r) {
-      return r.option == arm.option && r.value == arm.value;
+      return r.option == candidate.option && r.value == candidate.value;
     };
-    if (std::ranges::none_of(reported_, is_it)) round_.push_back({arm, {}, {}});
+    if (std::ranges::none_of(reported_, is_it)) round_.push_back({candidate, {}, {}});
   }
   // Try first what helped last.
   std::stable_partition(round_.begin(), round_.end(),
-                        [&](const CandidateScore& s) { return s.arm.option == last_option_; });
+                        [&](const CandidateScore& s) { return s.candidate.option == last_option_; });
   at_ = 0;
   samples_ = is_restoring_ ? control_.window : kFirstSamples;
 }
 
 void Controller::begin_block(const Follower& follower) {
   FollowConfig config = follower.config();
-  set(config.segmentation, round_[at_].arm.option, round_[at_].arm.value);
+  set(config.segmentation, round_[at_].candidate.option, round_[at_].candidate.value);
   candidate_.emplace(follower.with(std::move(config)));
   left_ = samples_ + 1;  // one more, as the first frame's predecessor has the present setting
   credit_ -= left_;
@@ -57,34 +57,35 @@ void Controller::begin_block(const Follower& follower) {
 
 std::optional<ControlEvent> Controller::end_block(const Config& config) {
   candidate_.reset();
-  if (lead_of(round_[at_]).mean > kObvious) {
+  if (gain_of(round_[at_]).mean > kObvious) {
     round_ = {round_[at_]};
   } else if (++at_ < round_.size()) {
     return std::nullopt;
   }
   at_ = 0;
   const bool has_seen_objects =
-      std::ranges::any_of(round_, [](const CandidateScore& s) { return !s.of_arm.empty(); });
+      std::ranges::any_of(round_, [](const CandidateScore& s) { return !s.of_candidate.empty(); });
   if (!has_seen_objects) return std::nullopt;  // compare again
-  round_ = halved(std::move(round_), control_.lead);
+  round_ = halved(std::move(round_), control_.min_gain);
   samples_ = std::min(4 * samples_, control_.window);
   const auto best =
       std::ranges::find_if(round_, [&](const CandidateScore& s) { return is_better(s, control_); });
   if (best == round_.end()) {
     const auto most = static_cast<std::size_t>(kMaxWindows * control_.window);
-    std::erase_if(round_, [&](const CandidateScore& s) { return s.of_arm.size() >= most; });
+    std::erase_if(round_, [&](const CandidateScore& s) { return s.of_candidate.size() >= most; });
     if (round_.empty() && !is_restoring_) step_ = step_ < kMaxStep ? 2 * step_ : kMinStep;
     return std::nullopt;
   }
-  if (since_report_ < control_.hold) return std::nullopt;
+  if (since_report_ < control_.cooldown) return std::nullopt;
   const bool tunes = control_.method == ControlMethod::tune;
-  const ControlEvent event{best->arm, tunes, value_of(config, best->arm.option), lead_of(*best).mean};
+  const ControlEvent event{best->candidate, tunes, value_of(config, best->candidate.option),
+                           gain_of(*best).mean};
   round_.clear();
   since_report_ = 0;
-  last_option_ = event.arm.option;
+  last_option_ = event.candidate.option;
   step_ = kMinStep;
   is_restoring_ = false;  // the next search is
-  if (!tunes) reported_.push_back(event.arm);
+  if (!tunes) reported_.push_back(event.candidate);
   return event;
 }
 
@@ -106,12 +107,12 @@ std::optional<ControlEvent> Controller::next(const TrackedFrame& step, const Fol
     const TrackedFrame tried = again(*candidate_);
     const bool has_objects = tried.reliability.steadiness > 0 || step.reliability.steadiness > 0;
     if (--left_ < samples_ && has_objects) {
-      round_[at_].of_arm.push_back(tried.reliability.steadiness);
+      round_[at_].of_candidate.push_back(tried.reliability.steadiness);
       round_[at_].of_present.push_back(step.reliability.steadiness);
     }
-  } catch (const std::exception&) {  // such as no memory: the arm loses, the frame's results do not
+  } catch (const std::exception&) {  // such as no memory: the candidate loses, the frame's results do not
     if (round_.empty()) return std::nullopt;
-    round_[at_].of_arm.assign(2, 0);
+    round_[at_].of_candidate.assign(2, 0);
     round_[at_].of_present.assign(2, 1);
     left_ = 0;
   }

@@ -106,7 +106,7 @@ TrackedFrame Follower::next(const StereoPair& pair, Stamp stamp, const std::opti
       return candidate.follow(pair, stamp, prior, map_from_camera, scan);
     });
     if (step.control && step.control->is_set)
-      set(config_.segmentation, step.control->arm.option, step.control->arm.value);
+      set(config_.segmentation, step.control->candidate.option, step.control->candidate.value);
   }
   return step;
 }

@@ -30,8 +30,8 @@ CAIRN_MEMBERS(Tracks, _list, _next, _stamp, _odometry_suspect)
 CAIRN_MEMBERS(Witnesses, _stereo, _photometric, _temporal, _floor, _odometry, _scan)
 CAIRN_MEMBERS(FloorInCamera, _up, _height)
 CAIRN_MEMBERS(Reliability, _value, _witnesses, _weakest, _steadiness, _weak_frames, _is_unreliable, _floor)
-CAIRN_MEMBERS(Arm, _option, _value, _restores)
-CAIRN_MEMBERS(ControlEvent, _arm, _is_set, _before, _lead)
+CAIRN_MEMBERS(OptionCandidate, _option, _value, _restores)
+CAIRN_MEMBERS(ControlEvent, _candidate, _is_set, _before, _gain)
 CAIRN_MEMBERS(TrackedFrame, index, _stamp, frame, ids, motion, map_from_camera, pose_covariance, is_lost,
               _tracks, _reliability, _control)
 
@@ -280,10 +280,10 @@ py::dict reliability_of(const TrackedFrame& step) {
 std::optional<py::dict> control_of(const TrackedFrame& step) {
   if (!step.control) return std::nullopt;
   py::dict known;
-  known["option"] = step.control->arm.option;
-  known["value"] = step.control->arm.value;
+  known["option"] = step.control->candidate.option;
+  known["value"] = step.control->candidate.value;
   known["before"] = step.control->before;
-  known["lead"] = step.control->lead;
+  known["lead"] = step.control->gain;
   known["is_set"] = step.control->is_set;
   return known;
 }

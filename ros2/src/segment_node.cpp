@@ -74,8 +74,8 @@ class SegmentNode : public rclcpp::Node {
       const cairn::TrackedFrame step = follower_->next(pair, stamp);
       if (step.control) {
         RCLCPP_INFO(get_logger(), "%s steadier with %s=%s (was %s)",
-                    step.control->is_set ? "set:" : "would be", step.control->arm.option.c_str(),
-                    step.control->arm.value.c_str(), step.control->before.c_str());
+                    step.control->is_set ? "set:" : "would be", step.control->candidate.option.c_str(),
+                    step.control->candidate.value.c_str(), step.control->before.c_str());
       }
       publish(step, seen, left->header.frame_id);
     } catch (const cairn::Error& error) {

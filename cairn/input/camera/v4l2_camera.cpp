@@ -242,9 +242,9 @@ class V4l2Camera : public Camera {
                   std::string(format_->name));
     }
     if (pixels.width == 0 || pixels.height == 0 || pixels.width > io::kMaxPixelsPerSide ||
-        pixels.height > kMaxPixelsPerSide) {
+        pixels.height > io::kMaxPixelsPerSide) {
       throw Error("gives " + std::to_string(pixels.width) + "x" + std::to_string(pixels.height) +
-                  ", expected sides of 1 ... " + std::to_string(kMaxPixelsPerSide));
+                  ", expected sides of 1 ... " + std::to_string(io::kMaxPixelsPerSide));
     }
     if (format_->code == V4L2_PIX_FMT_YUYV && pixels.width % 2 != 0) {
       throw Error("gives YUYV " + std::to_string(pixels.width) + " px wide, expected an even width");

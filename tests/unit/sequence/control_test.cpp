@@ -20,9 +20,9 @@ std::vector<std::string> values(const Config& config) {
   return all;
 }
 
-CandidateScore score(std::vector<float> of_arm, std::vector<float> of_present,
+CandidateScore score(std::vector<float> of_candidate, std::vector<float> of_present,
                      const std::string& value = "1") {
-  return {{"superpixels.count", value}, std::move(of_arm), std::move(of_present)};
+  return {{"superpixels.count", value}, std::move(of_candidate), std::move(of_present)};
 }
 
 TEST(Options, AreFewEnoughToRead) {
@@ -31,17 +31,18 @@ TEST(Options, AreFewEnoughToRead) {
 
 TEST(Arms, AreReadByTheirConfigurationAndChangeIt) {
   const Config config;
-  const std::vector<OptionCandidate> arms = arms_of(config, kSize);
-  ASSERT_GE(arms.size(), 8U);
-  for (const OptionCandidate& arm : arms) {
+  const std::vector<OptionCandidate> candidates = option_candidates(config, kSize);
+  ASSERT_GE(candidates.size(), 8U);
+  for (const OptionCandidate& candidate : candidates) {
     Config changed = config;
-    set(changed, arm.option, arm.value);
-    EXPECT_NO_THROW(validate(changed, kSize, true)) << arm.option;
-    EXPECT_NO_THROW(require_active(config, arm.option));
+    set(changed, candidate.option, candidate.value);
+    EXPECT_NO_THROW(validate(changed, kSize, true)) << candidate.option;
+    EXPECT_NO_THROW(require_active(config, candidate.option));
     const auto now = options(config);
-    EXPECT_NE(std::ranges::find(now, arm.option, &OptionInfo::name)->value, arm.value) << arm.option;
+    EXPECT_NE(std::ranges::find(now, candidate.option, &OptionInfo::name)->value, candidate.value)
+        << candidate.option;
   }
-  EXPECT_EQ(arms, arms_of(config, kSize));
+  EXPECT_EQ(candidates, option_candidates(config, kSize));
 }
 
 TEST(Arms, OmitChangesWithoutEffectOrOutOfRange) {
@@ -49,8 +50,8 @@ TEST(Arms, OmitChangesWithoutEffectOrOutOfRange) {
   config.match.method = MatchMethod::window;
   config.objects.min_area = 80;
   const auto has = [&](const std::string& option, const std::string& value) {
-    const std::vector<OptionCandidate> arms = arms_of(config, kSize);
-    return std::ranges::find(arms, OptionCandidate{option, value}) != arms.end();
+    const std::vector<OptionCandidate> candidates = option_candidates(config, kSize);
+    return std::ranges::find(candidates, OptionCandidate{option, value}) != candidates.end();
   };
   EXPECT_FALSE(has("semi_global.penalty_large", "1.1"));
   EXPECT_FALSE(has("objects.min_area", "160"));
@@ -61,17 +62,17 @@ TEST(Arms, OmitChangesWithoutEffectOrOutOfRange) {
 }
 
 TEST(LeadOfAnArm, IsTheMeanOfPairedDifferencesOverThePresentsMean) {
-  const Lead lead = lead_of(score({1.2F, 2.2F, 3.2F}, {1, 2, 3}));
-  EXPECT_NEAR(lead.mean, 0.1, 1e-6);
-  EXPECT_NEAR(lead.low, 0.1, 1e-6);  // a constant lead
-  const Lead unsure = lead_of(score({2, 2, 2.6F}, {1, 2, 3}));
+  const Gain gain = gain_of(score({1.2F, 2.2F, 3.2F}, {1, 2, 3}));
+  EXPECT_NEAR(gain.mean, 0.1, 1e-6);
+  EXPECT_NEAR(gain.low, 0.1, 1e-6);  // a constant lead
+  const Gain unsure = gain_of(score({2, 2, 2.6F}, {1, 2, 3}));
   EXPECT_NEAR(unsure.mean, 0.1, 1e-6);
   EXPECT_LT(unsure.low, 0);
-  EXPECT_EQ(lead_of(score({5}, {1})).mean, -1);  // one frame is no evidence
+  EXPECT_EQ(gain_of(score({5}, {1})).mean, -1);  // one frame is no evidence
 }
 
 TEST(LeadOfAnArm, IsDefinedIfTheCurrentSettingsFindNothing) {
-  EXPECT_GT(lead_of(score({1, 1}, {0, 0})).mean, 100);
+  EXPECT_GT(gain_of(score({1, 1}, {0, 0})).mean, 100);
 }
 
 TEST(Halving, KeepsTheLeadingHalfAndNoMarginalLead) {
@@ -80,9 +81,9 @@ TEST(Halving, KeepsTheLeadingHalfAndNoMarginalLead) {
                                           score({1.1F, 1.1F}, {1, 1}, "5")};
   const std::vector<CandidateScore> left = halved(round, 10);
   ASSERT_EQ(left.size(), 3U);
-  EXPECT_EQ(left[0].arm.value, "2");
-  EXPECT_EQ(left[1].arm.value, "1");  // a tie keeps the earlier one
-  EXPECT_EQ(left[2].arm.value, "4");
+  EXPECT_EQ(left[0].candidate.value, "2");
+  EXPECT_EQ(left[1].candidate.value, "1");  // a tie keeps the earlier one
+  EXPECT_EQ(left[2].candidate.value, "4");
   EXPECT_TRUE(halved({score({1.04F, 1.04F}, {1, 1})}, 10).empty());
   EXPECT_EQ(halved({score({1.06F, 1.06F}, {1, 1})}, 10).size(), 1U);
   EXPECT_TRUE(halved({score({1, 1}, {1, 1})}, 0).empty());  // no effect
@@ -124,7 +125,7 @@ FollowConfig too_large(const samples::Sample& sample, ControlMethod method) {
   config.control.method = method;
   config.control.budget = 1;
   config.control.window = 3;
-  config.control.hold = 1;
+  config.control.cooldown = 1;
   return config;
 }
 
@@ -157,11 +158,12 @@ TEST(Controller, NamesTheOptionThatRestoresObjectsReproducibly) {
   const FollowConfig config = slightly_too_large(sample, ControlMethod::watch);
   const Seen seen = play(sample, config, 30);
   ASSERT_FALSE(seen.events.empty());
-  EXPECT_EQ(seen.events[0].arm.option, "objects.min_area");
-  EXPECT_GT(seen.events[0].lead, 0.1);
+  EXPECT_EQ(seen.events[0].candidate.option, "objects.min_area");
+  EXPECT_GT(seen.events[0].gain, 0.1);
   const Seen again = play(sample, config, 30);
   ASSERT_EQ(again.events.size(), seen.events.size());
-  for (std::size_t i = 0; i < seen.events.size(); ++i) EXPECT_EQ(again.events[i].arm, seen.events[i].arm);
+  for (std::size_t i = 0; i < seen.events.size(); ++i)
+    EXPECT_EQ(again.events[i].candidate, seen.events[i].candidate);
 }
 
 TEST(Controller, WatchingChangesNothing) {
@@ -178,19 +180,19 @@ TEST(Controller, WatchingChangesNothing) {
 
 TEST(RestoringArms, AreTheKnownValuesOfOptionsThatDiffer) {
   const Config known;
-  EXPECT_TRUE(restoring_arms(known, known, kSize).empty());
+  EXPECT_TRUE(restoring_candidates(known, known, kSize).empty());
   Config config;
   config.superpixels.count = 40;
   config.background.max_walls = 0;
   config.uniqueness.ratio = 5;
-  const std::vector<OptionCandidate> arms = restoring_arms(config, known, kSize);
-  EXPECT_EQ(arms, (std::vector<OptionCandidate>{{"uniqueness.ratio", "-1", true},
-                                                {"background.max_walls", "3", true},
-                                                {"superpixels.count", "250", true}}));
+  const std::vector<OptionCandidate> candidates = restoring_candidates(config, known, kSize);
+  EXPECT_EQ(candidates, (std::vector<OptionCandidate>{{"uniqueness.ratio", "-1", true},
+                                                      {"background.max_walls", "3", true},
+                                                      {"superpixels.count", "250", true}}));
 }
 
 TEST(RestoringArms, RespectWhatTheUserKnowsOfTheScene) {
-  const auto of = [](Config config) { return restoring_arms(config, Config{}, kSize); };
+  const auto of = [](Config config) { return restoring_candidates(config, Config{}, kSize); };
   Config config;
   config.match.num_disparities = 128;
   config.match.min_disparity = 4;
@@ -201,13 +203,13 @@ TEST(RestoringArms, RespectWhatTheUserKnowsOfTheScene) {
   pose.ground.source = GroundSource::pose;
   pose.ground.known.camera_height_m = 1;
   EXPECT_TRUE(of(pose).empty());
-  const auto has_ground = [](const std::vector<OptionCandidate>& arms) {
-    return std::ranges::find(arms, "ground.source", &OptionCandidate::option) != arms.end();
+  const auto has_ground = [](const std::vector<OptionCandidate>& candidates) {
+    return std::ranges::find(candidates, "ground.source", &OptionCandidate::option) != candidates.end();
   };
-  EXPECT_FALSE(has_ground(arms_of(pose, kSize)));
+  EXPECT_FALSE(has_ground(option_candidates(pose, kSize)));
   pose.ground.source = GroundSource::off;
   EXPECT_TRUE(has_ground(of(pose)));
-  EXPECT_TRUE(has_ground(arms_of(pose, kSize)));
+  EXPECT_TRUE(has_ground(option_candidates(pose, kSize)));
   Config robot;
   robot.obstacles.range = 10;
   EXPECT_TRUE(of(robot).empty());
@@ -238,21 +240,21 @@ TEST(RestoringArms, NeedASignificantLeadButNoLargeOne) {
   CandidateScore little = score({1.05F, 1.02F, 1.04F}, {1, 1, 1});
   EXPECT_FALSE(is_better(little, config));
   EXPECT_TRUE(halved({little}, 10).empty());
-  little.arm.restores = true;
+  little.candidate.restores = true;
   EXPECT_TRUE(is_better(little, config));
   EXPECT_EQ(halved({little}, 10).size(), 1U);
   CandidateScore unsure = score({1.3F, 0.8F, 1.0F}, {1, 1, 1});
-  unsure.arm.restores = true;
+  unsure.candidate.restores = true;
   EXPECT_FALSE(is_better(unsure, config));
 }
 
 TEST(Controller, TuningSetsTheOptionFromTheNextFrameOn) {
   const samples::Sample sample = samples::load("four_in_a_row");
   FollowConfig config = too_large(sample, ControlMethod::tune);
-  config.control.lead = 100;  // nothing but the preset's value
+  config.control.min_gain = 100;  // nothing but the preset's value
   const Seen seen = play(sample, config, 30);
   ASSERT_FALSE(seen.events.empty());
-  EXPECT_EQ(seen.events[0].arm.option, "objects.min_area");
+  EXPECT_EQ(seen.events[0].candidate.option, "objects.min_area");
   EXPECT_EQ(seen.events[0].before, "60");
   EXPECT_TRUE(seen.events[0].is_set);
   EXPECT_EQ(seen.config.segmentation.objects.min_area, Config{}.objects.min_area);
@@ -269,7 +271,7 @@ TEST(Controller, TuningSetsTheOptionFromTheNextFrameOn) {
 TEST(Controller, TuningLeavesThePresetWithoutAClearLead) {
   const samples::Sample sample = samples::load("four_in_a_row");
   FollowConfig config = too_large(sample, ControlMethod::tune);
-  config.control.lead = 100;
+  config.control.min_gain = 100;
   config.segmentation.objects.min_area = Config{}.objects.min_area;
   const Seen seen = play(sample, config, 60);
   EXPECT_TRUE(seen.events.empty());
@@ -279,8 +281,8 @@ TEST(Controller, TuningLeavesThePresetWithoutAClearLead) {
 TEST(Controller, TuningIsReproducibleForAnyNumberOfThreadsAndKeepsTheHold) {
   const samples::Sample sample = samples::load("four_in_a_row");
   FollowConfig config = too_large(sample, ControlMethod::tune);
-  config.control.lead = 1;
-  config.control.hold = 25;
+  config.control.min_gain = 1;
+  config.control.cooldown = 25;
   const Seen seen = play(sample, config, 70);
   const Seen again = play(sample, config, 70, 3);
   ASSERT_GE(seen.events.size(), 1U);
@@ -294,11 +296,12 @@ TEST(Controller, WatchingReportsAValueOnce) {
   FollowConfig config = too_large(sample, ControlMethod::watch);
   config.segmentation.objects.min_area = 1;
   config.segmentation.ground.source = GroundSource::off;
-  config.control.lead = 0;
+  config.control.min_gain = 0;
   const Seen seen = play(sample, config, 120);
   std::set<std::pair<std::string, std::string>> reported;
   for (const ControlEvent& event : seen.events)
-    EXPECT_TRUE(reported.emplace(event.arm.option, event.arm.value).second) << event.arm.option;
+    EXPECT_TRUE(reported.emplace(event.candidate.option, event.candidate.value).second)
+        << event.candidate.option;
   EXPECT_EQ(values(seen.config.segmentation), values(config.segmentation));
 }
 
@@ -346,7 +349,7 @@ TEST(Controller, AnotherConfigurationBeginsTheSearchAnew) {
   const auto until_set = [&] {
     for (int k = 0; k < 30; ++k) {
       const TrackedFrame step = follower.next(sample.pair(), {++frames * std::int64_t{100'000'000}});
-      if (step.control) return step.control->arm.option;
+      if (step.control) return step.control->candidate.option;
     }
     return std::string("none");
   };
