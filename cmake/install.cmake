@@ -21,7 +21,7 @@ set(private_headers
   core/disjoint_sets core/each_index core/highway_targets stereo/label_kernels_plain core/nearest core/stage_clock
   core/pool_memory core/random core/scratch
   image/gaussian image/local_contrast image/prefilter image/sparse_points image/texture
-  stereo/byte_lanes_plain stereo/islands stereo/lanes_plain stereo/memory stereo/pixel_math
+  stereo/byte_lanes_plain stereo/islands stereo/lanes_plain stereo/memory
   scene/floor_search scene/plane_fit scene/plane_through_pairs
   regions/gradient_threshold regions/growing_regions regions/percent regions/runs regions/superpixel_regions
   regions/split_floor regions/surfaces_behind

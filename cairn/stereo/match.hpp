@@ -90,7 +90,8 @@ struct Matches {
 ///   zssd  (N·Σ(L−R)² − (ΣL−ΣR)²) / N
 ///   nssd  Σ(L−R)² / sqrt(ΣL²·ΣR²), 65536 if either has no energy
 ///   zncc  1 − (N·ΣLR − ΣL·ΣR) / sqrt((N·ΣL²−(ΣL)²)·(N·ΣR²−(ΣR)²)), 1 if either has no variance
-/// Sums are exact integers; the last formula is float and the same on every target (pixel_math.hpp).
+/// Sums are exact integers; the last formula is float and the same on every target: one rounding per
+/// operation, none fused.
 /// With row_band k, cost(x, y, d) is the lowest over the rows y+r of the right image, |r| ≤ k (ties: r = 0,
 /// −1, 1, −2 …).
 ///

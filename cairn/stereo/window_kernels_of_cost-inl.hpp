@@ -6,9 +6,9 @@
 #include <array>
 #include <bit>
 #include <cairn/core/scratch.hpp>
+#include <cairn/image/prefilter.hpp>
 #include <cairn/stereo/lanes_plain.hpp>
 #include <cairn/stereo/memory.hpp>
-#include <cairn/stereo/pixel_math.hpp>
 #include <cairn/stereo/window_kernels.hpp>
 #include <cstddef>
 #include <cstdint>

@@ -223,7 +223,8 @@ struct Rows {
 };
 
 // ----------------------------------------------------------------------------------------------------
-// Formulas: pixel_math.hpp, lane by lane
+// Formulas: from exact integer sums to a float cost. One rounding per operation, none fused, so every target
+// gets the same bits. n: number of pixels; l, r: sums of the left and right pixels; ll, rr: of their squares.
 
 /// n·a − b·c, rounded once. In 32 bits if the result is known to fit, whatever the products do.
 template <bool kDouble>
@@ -244,8 +245,7 @@ CAIRN_LANES_INLINE VF inverse_root(VI n, VI energy, VI sum) {
   return lanes::IfThenElseZero(lanes::Gt(v, lanes::Zero(f)), lanes::Div(lanes::Set(f, 1.0F), lanes::Sqrt(v)));
 }
 
-/// The sums that turn a box sum into a cost, in the notation of pixel_math.hpp: of the left and of the right
-/// windows.
+/// The sums that turn a box sum into a cost: of the left and of the right windows.
 struct LeftSums {
   VI n;
   VI n_of_box;  // n over the scale of box sums
@@ -279,8 +279,7 @@ CAIRN_LANES_INLINE VF cost_of(VI box, const LeftSums& left, const RightSums& rig
     } else if constexpr (kCost == Cost::nssd) {
       const VF inverse = lanes::Mul(left.inverse_l, right.inverse_r);
       return lanes::IfThenElse(lanes::Gt(inverse, lanes::Zero(f)),
-                               lanes::Mul(lanes::ConvertTo(f, ssd), inverse),
-                               lanes::Set(f, pixel_math::kNoEnergyCost));
+                               lanes::Mul(lanes::ConvertTo(f, ssd), inverse), lanes::Set(f, 65536.0F));
     } else {
       const VI l_minus_r = lanes::Sub(left.l, right.r);
       if constexpr (kDouble)

@@ -8,8 +8,9 @@
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
-constexpr int kBlock = 64;       // left pixels whose costs are kept at a time
-constexpr int kRightBlock = 16;  // number of these passed on at a time: the lanes of a vector
+constexpr int kBlock = 64;        // left pixels whose costs are kept at a time
+constexpr int kRightBlock = 16;   // number of these passed on at a time: the lanes of a vector
+constexpr int kPartialSums = 16;  // of a mean: the k-th adds candidates k, k + 16, …, whatever the lanes
 
 /// The value for Matches.
 template <class Width>
@@ -218,7 +219,7 @@ template <class Width>
 CAIRN_LANES_INLINE VF partial_sums(const float* costs, int count, int residue) {
   const F f;
   VF sum = lanes::Zero(f);
-  for (int i = residue; i < count; i += pixel_math::kPartialSums) {
+  for (int i = residue; i < count; i += kPartialSums) {
     const VF cost = lanes::Load(f, costs + i);
     sum = lanes::Add(sum, lanes::IfThenZeroElse(lanes::Eq(cost, lanes::Set(f, kNoCost)), cost));
   }
@@ -229,7 +230,7 @@ template <class Width>
 CAIRN_LANES_INLINE VF partial_sums(const std::int16_t* costs, int count, int residue) {
   const I i32;
   VI sum = lanes::Zero(i32);
-  for (int i = residue; i < count; i += pixel_math::kPartialSums) {
+  for (int i = residue; i < count; i += kPartialSums) {
     const VI cost = lanes::Add(lanes::LoadWidened(i32, costs + i), lanes::Set(i32, 32768));
     sum = lanes::Add(sum, lanes::IfThenZeroElse(lanes::Eq(cost, lanes::Set(i32, 65535)),
                                                 lanes::ShiftRight<Width::kShift>(cost)));
@@ -237,11 +238,12 @@ CAIRN_LANES_INLINE VF partial_sums(const std::int16_t* costs, int count, int res
   return lanes::ConvertTo(F(), sum);
 }
 
-/// pixel_math::sum_of_partials() of all of them: the same halvings, vectors first, then lanes.
+/// The sum of all of them by repeated halving, vectors first, then lanes. It does not depend on the number of
+/// lanes.
 template <class Width>
 CAIRN_LANES_INLINE float sum_by_parts(const typename Width::Cost* costs, int count) {
   constexpr int kLanes = static_cast<int>(lanes::MaxLanes(F()));
-  constexpr int kSums = pixel_math::kPartialSums / kLanes;
+  constexpr int kSums = kPartialSums / kLanes;
   VF sums[kSums];
   for (int v = 0; v < kSums; ++v) sums[v] = partial_sums<Width>(costs, count, v * kLanes);
   for (int half = kSums / 2; half > 0; half /= 2) {

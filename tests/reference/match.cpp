@@ -4,13 +4,28 @@
 
 #include <algorithm>
 #include <array>
-#include <cairn/stereo/pixel_math.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <utility>
 
 namespace cairn::reference {
 namespace {
+
+constexpr int kPartialSums = 16;  // of mean_cost; see sum_of_partials()
+
+/// 1/√v in float, 0 for v = 0.
+float inverse_root(std::int64_t v) {
+  return v > 0 ? 1.0F / std::sqrt(static_cast<float>(v)) : 0.0F;
+}
+
+/// Adds sixteen partial sums in a fixed order. The k-th holds the costs of candidates k, k + 16, …, so a mean
+/// does not depend on the number of lanes.
+float sum_of_partials(const float* partial) {
+  float quarter[4];
+  for (int i = 0; i < 4; ++i) quarter[i] = (partial[i] + partial[i + 8]) + (partial[i + 4] + partial[i + 12]);
+  return (quarter[0] + quarter[2]) + (quarter[1] + quarter[3]);
+}
 
 /// The input of the windows: grey levels, or zsad's 1/16 levels minus the local mean.
 struct ImagePair {
@@ -40,21 +55,26 @@ float cost_of(const ImagePair& in, const MatchConfig& config, int x, int y, int 
       n += 1, l += a, r += b, ll += a * a, rr += b * b, lr += a * b, ad += std::abs(a - b);
     }
   }
-  using namespace pixel_math;
-  const std::int64_t ssd_sum = ll + rr - 2 * lr;
+  const std::int64_t ssd = ll + rr - 2 * lr;
+  // From exact sums to a float cost: one rounding per operation, so every target gets the same bits.
   switch (config.cost) {
     case Cost::sad:
-      return sad(ad);
+      return static_cast<float>(ad);
     case Cost::ssd:
-      return ssd(ssd_sum);
+      return static_cast<float>(ssd);
     case Cost::zsad:
-      return zsad(ad);
+      return static_cast<float>(ad) * (1.0F / 16);
     case Cost::zssd:
-      return zssd(n, ssd_sum, l - r);
-    case Cost::nssd:
-      return nssd(ssd_sum, inverse_root(ll), inverse_root(rr));
-    case Cost::zncc:
-      return zncc(n, lr, l, r, inverse_root(n * ll - l * l), inverse_root(n * rr - r * r));
+      return static_cast<float>(n * ssd - (l - r) * (l - r)) * (1.0F / static_cast<float>(n));
+    case Cost::nssd: {
+      const float inverse = inverse_root(ll) * inverse_root(rr);
+      return inverse > 0 ? static_cast<float>(ssd) * inverse : 65536.0F;
+    }
+    case Cost::zncc: {
+      const float inverse = inverse_root(n * ll - l * l) * inverse_root(n * rr - r * r);
+      // Rounding may take a perfect match below 0.
+      return std::max(0.0F, 1.0F - static_cast<float>(n * lr - l * r) * inverse);
+    }
   }
   return kNoCost;
 }
@@ -73,12 +93,12 @@ std::pair<float, int> cost_in_band(const ImagePair& in, const MatchConfig& confi
 
 void match_pixel(const ImagePair& in, const MatchConfig& config, int x, int y, Matches& out) {
   std::vector<float> costs;
-  std::array<float, pixel_math::kPartialSums> partial{};
+  std::array<float, kPartialSums> partial{};
   int count = 0;
   for (int i = 0; i < config.num_disparities; ++i) {
     costs.push_back(cost_in_band(in, config, x, y, config.min_disparity + i).first);
     if (costs.back() == kNoCost) continue;
-    partial[static_cast<std::size_t>(i % pixel_math::kPartialSums)] += costs.back();
+    partial[static_cast<std::size_t>(i % kPartialSums)] += costs.back();
     ++count;
   }
   const int best = static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());
@@ -99,8 +119,7 @@ void match_pixel(const ImagePair& in, const MatchConfig& config, int x, int y, M
   out.cost_before(x, y) = count > 0 ? cost_at(best - 1) : kNoCost;
   out.cost_after(x, y) = count > 0 ? cost_at(best + 1) : kNoCost;
   if (config.maps == MatchMaps::minimum) return;
-  out.mean_cost(x, y) =
-      count > 0 ? pixel_math::sum_of_partials(partial.data()) / static_cast<float>(count) : kNoCost;
+  out.mean_cost(x, y) = count > 0 ? sum_of_partials(partial.data()) / static_cast<float>(count) : kNoCost;
 }
 
 /// Over the right image: every left pixel and row that may match (x_right, y_right).

@@ -83,7 +83,7 @@ TEST(Options, RefuseValuesOutOfRangeAndNameTheRange) {
   EXPECT_NE(refusal("uniqueness.ratio", "nan").find("a number"), std::string::npos);
   EXPECT_NE(refusal("match.window_size", "9.5").find("a whole number"), std::string::npos);
   EXPECT_NE(refusal("match.window_size", "").find("a whole number"), std::string::npos);
-  EXPECT_NE(refusal("match.cost", "ncc").find("sad|ssd|zsad|"), std::string::npos);
+  EXPECT_NE(refusal("match.cost", "cosine").find("sad|ssd|zsad|"), std::string::npos);
   EXPECT_NE(refusal("ground.label_floor", "maybe").find("true or false"), std::string::npos);
 }
 
