@@ -30,10 +30,9 @@ void set(Config& config, std::string_view name, std::string_view value) {
 Reject reasons_in_force(const Config& config, bool external_disparity) {
   Reject all = external_disparity ? Reject::no_data : Reject::border;
   const auto add = [&](bool is_on, Reject reason) { all |= is_on ? reason : Reject::none; };
-  add(!external_disparity && config.left_right.max_diff >= 0, Reject::left_right);
-  add(!external_disparity && config.uniqueness.ratio >= 0, Reject::not_unique);
-  add(!external_disparity && config.flatness.threshold >= 0, Reject::flat);
-  add(!external_disparity && config.texture.threshold >= 0, Reject::no_texture);
+  for_each_check(config, [&](const char*, Reject reason, const auto&, const auto&, bool is_on) {
+    add(!external_disparity && is_on, reason);
+  });
   add(config.ground.source != GroundSource::off, Reject::below_ground);
   add(config.speckle.size > 0, Reject::speckle);
   return all;

@@ -94,6 +94,17 @@ void for_each_section(C& c, F&& visit) {
   visit("obstacles", c.obstacles);
 }
 
+/// Calls visit(name of the stage, its bit, function, section, whether it is on) for every check of a match, in
+/// data-flow order. The pipeline, the reasons in force and Python take the checks from here.
+template <class F>
+void for_each_check(const Config& c, F&& visit) {
+  visit("reject_inconsistent", Reject::left_right, reject_inconsistent, c.left_right,
+        c.left_right.max_diff >= 0);
+  visit("reject_ambiguous", Reject::not_unique, reject_ambiguous, c.uniqueness, c.uniqueness.ratio >= 0);
+  visit("reject_flat", Reject::flat, reject_flat, c.flatness, c.flatness.threshold >= 0);
+  visit("reject_textureless", Reject::no_texture, reject_textureless, c.texture, c.texture.threshold >= 0);
+}
+
 /// One option, for the reference page, the command line and bindings.
 struct OptionInfo {
   std::string name;    // "match.window_size"

@@ -4,7 +4,9 @@
 // From a pair to disparities: one call per stage.
 #include <cairn/image/noise.hpp>
 #include <cairn/pipeline/methods.hpp>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace cairn {
 namespace {
@@ -24,14 +26,16 @@ StereoMatch match_pair(FrameInput& in, const Run& run, StageClock& stage) {
   auto refined = stage("refine_subpixel", refine_subpixel(found.matches, config.subpixel, exec));
 
   // Independent checks of each match; each sets its own bit.
-  const auto inconsistent =
-      stage("reject_inconsistent", reject_inconsistent(found.matches, config.left_right, exec));
-  const auto ambiguous = stage("reject_ambiguous", reject_ambiguous(found.matches, config.uniqueness, exec));
-  const auto flat = stage("reject_flat", reject_flat(found.matches, config.flatness, exec));
-  const auto textureless =
-      stage("reject_textureless", reject_textureless(in.left.gray, config.texture, exec));
+  std::vector<Image<Reject>> verdicts;
+  for_each_check(config, [&](const char* name, Reject, auto* check, const auto& section, bool) {
+    if constexpr (std::is_invocable_v<decltype(check), const Matches&, decltype(section), const Exec&>) {
+      verdicts.push_back(stage(name, check(found.matches, section, exec)));
+    } else {
+      verdicts.push_back(stage(name, check(in.left.gray, section, exec)));
+    }
+  });
   found.stereo.disparity =
-      stage("combine", combine(std::move(refined), {inconsistent, ambiguous, flat, textureless}, exec));
+      stage("combine", combine(std::move(refined), {verdicts.begin(), verdicts.end()}, exec));
   return found;
 }
 

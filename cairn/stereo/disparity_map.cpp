@@ -36,7 +36,7 @@ void require_values(View<const float> disparity_px) {
 
 }  // namespace
 
-DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const Reject>> verdicts,
+DisparityMap combine(Image<float> refined_px, const std::vector<View<const Reject>>& verdicts,
                      const Exec& exec) {
   DisparityMap map{std::move(refined_px), {}};
   const Size size = map.disparity_px.size();

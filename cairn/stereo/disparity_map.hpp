@@ -5,7 +5,7 @@
 #include <cairn/core/exec.hpp>
 #include <cairn/core/image.hpp>
 #include <cairn/stereo/reject.hpp>
-#include <initializer_list>
+#include <vector>
 
 namespace cairn {
 
@@ -20,7 +20,7 @@ inline constexpr float kMaxDisparity = 2047.0F;
 
 /// Applies the verdicts of the checks: a pixel keeps every bit it received, NaN adds Reject::border.
 /// (docs/why_is_this_pixel_a_hole.md) All views have the size of `refined_px`.
-DisparityMap combine(Image<float> refined_px, std::initializer_list<View<const Reject>> verdicts,
+DisparityMap combine(Image<float> refined_px, const std::vector<View<const Reject>>& verdicts,
                      const Exec& exec);
 
 /// A map from outside (depth camera, learned matcher): NaN and ±inf become holes with Reject::no_data. Throws

@@ -18,16 +18,12 @@ struct Outcome {
   Image<float> disparity_px{};
 };
 
-/// The options that determine the disparities before the ground is fitted.
+/// The options that determine the disparities before the ground is fitted. Options are in data-flow order.
 std::string matching_settings(const Config& config) {
-  constexpr std::array<std::string_view, 8> kStages{
-      "epipolar_correction.", "match.",      "semi_global.", "subpixel.",
-      "left_right.",          "uniqueness.", "flatness.",    "texture."};
   std::string all;
   for (const OptionInfo& option : options(config)) {
-    const bool matters = std::any_of(kStages.begin(), kStages.end(),
-                                     [&](std::string_view stage) { return option.name.starts_with(stage); });
-    if (matters) all += option.value + '\n';
+    if (option.name.starts_with("ground.")) break;
+    all += option.value + '\n';
   }
   return all;
 }

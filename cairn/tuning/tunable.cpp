@@ -191,11 +191,12 @@ std::vector<std::string> usual_tunables(const Config& config, bool objects) {
 }
 
 bool changes_disparities(std::string_view option) {
-  constexpr std::array<std::string_view, 10> kStages{
-      "epipolar_correction.", "match.",    "semi_global.", "subpixel.", "left_right.",
-      "uniqueness.",          "flatness.", "texture.",     "ground.",   "speckle."};
-  return std::any_of(kStages.begin(), kStages.end(),
-                     [&](std::string_view stage) { return option.starts_with(stage); });
+  if (option.starts_with("pipeline.")) return false;
+  for (const OptionInfo& known : options(Config{})) {  // in data-flow order
+    if (known.name.starts_with("background.")) return false;
+    if (known.name == option) return true;
+  }
+  return false;
 }
 
 std::vector<std::string> neighbours(const Tunable& tunable, const std::string& value, double step) {

@@ -69,6 +69,32 @@ struct ArgumentOf<View<const Rgb>> {
   }
   [[nodiscard]] View<const Rgb> get() const { return rgb; }
 };
+/// An image, and its noise: the last of the caller's arguments.
+template <>
+struct ArgumentOf<LeftImage> {
+  LeftImage left;
+  void take(CallArguments& given) {
+    const auto& picture = given.value().cast<const LoadedImage&>();
+    left = {picture.gray(), picture.rgb(), py::object(given.values[given.values.size() - 1]).cast<float>()};
+  }
+  [[nodiscard]] const LeftImage& get() const { return left; }
+};
+template <>
+struct ArgumentOf<ObstacleCues> {
+  std::optional<ObstacleCues> cues;
+  void take(CallArguments& given) {
+    const auto& objects = given.value().cast<const Objects&>();
+    const auto& disparity = given.value().cast<const DisparityMap&>();
+    const auto confidence = given.value().cast<View<const float>>();
+    const auto& ground = given.value().cast<const Ground&>();
+    const auto& background = given.value().cast<const Background&>();
+    const auto& superpixels = given.value().cast<const Superpixels&>();
+    const auto surface_disparity_px = given.value().cast<View<const float>>();
+    cues.emplace(ObstacleCues{disparity, surface_disparity_px, confidence, ground, background,
+                              superpixels.labels, objects.labels});
+  }
+  [[nodiscard]] const ObstacleCues& get() const { return *cues; }
+};
 /// Two images of the same size, valid for the configuration. The source of the ground is irrelevant here.
 template <>
 struct ArgumentOf<StereoPair> {
@@ -144,19 +170,17 @@ Numbers<std::int32_t> grown(const RegionGraph& graph, double mean_difference_max
   return {grow(graph, {mean_difference_max, deviation_max, sigma_min, min_region_area}, exec)};
 }
 
-Image<ObjectHint> hints(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
-                        const DisparityMap& disparity, View<const float> textured_px, const Ground& ground,
-                        const Background& background, float noise, const Exec& exec) {
-  return hint_objects(superpixels.edges,
-                      {{left, rgb, noise}, disparity.disparity_px, textured_px, ground, background}, exec);
+Image<ObjectHint> hints(const Superpixels& superpixels, const LeftImage& left, const DisparityMap& disparity,
+                        View<const float> textured_px, const Ground& ground, const Background& background,
+                        const Exec& exec) {
+  return hint_objects(superpixels.edges, {left, disparity.disparity_px, textured_px, ground, background},
+                      exec);
 }
 
-Numbers<std::int16_t> hint_numbers(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
+Numbers<std::int16_t> hint_numbers(const Superpixels& superpixels, const LeftImage& left,
                                    const DisparityMap& disparity, View<const float> textured_px,
-                                   const Ground& ground, const Background& background, float noise,
-                                   const Exec& exec) {
-  const Image<ObjectHint> all =
-      hints(superpixels, left, rgb, disparity, textured_px, ground, background, noise, exec);
+                                   const Ground& ground, const Background& background, const Exec& exec) {
+  const Image<ObjectHint> all = hints(superpixels, left, disparity, textured_px, ground, background, exec);
   Numbers<std::int16_t> numbers{{}, {all.height(), all.width(), 5}};
   for (int y = 0; y < all.height(); ++y) {
     std::for_each_n(all.row(y), all.width(), [&](const ObjectHint& h) {
@@ -166,25 +190,17 @@ Numbers<std::int16_t> hint_numbers(const Superpixels& superpixels, View<const Gr
   return numbers;
 }
 
-MergeTree merge_tree(const Superpixels& superpixels, View<const Gray> left, View<const Rgb> rgb,
-                     const DisparityMap& disparity, View<const float> textured_px, const Ground& ground,
-                     const Background& background, float noise, const Exec& exec) {
-  const Image<ObjectHint> found =
-      hints(superpixels, left, rgb, disparity, textured_px, ground, background, noise, exec);
-  const Cues cues{{left, rgb, noise}, disparity.disparity_px, textured_px, ground, background, found};
+MergeTree merge_tree(const Superpixels& superpixels, const LeftImage& left, const DisparityMap& disparity,
+                     View<const float> textured_px, const Ground& ground, const Background& background,
+                     const Exec& exec) {
+  const Image<ObjectHint> found = hints(superpixels, left, disparity, textured_px, ground, background, exec);
+  const Cues cues{left, disparity.disparity_px, textured_px, ground, background, found};
   return grow_merge_tree(superpixels, cues, merge_classifier(), exec);
 }
 
-/// combine() takes a list of fixed length, so the verdicts are united into one.
 DisparityMap combined(View<const float> refined_px, const std::vector<View<const Reject>>& verdicts,
                       const Exec& exec) {
-  Image<Reject> all(refined_px.size(), Reject::none, exec.pool);
-  for (const View<const Reject>& verdict : verdicts) {
-    for (int y = 0; y < all.height(); ++y) {
-      for (int x = 0; x < all.width(); ++x) all(x, y) |= verdict(x, y);
-    }
-  }
-  return combine(copied(refined_px, exec.pool), {all}, exec);
+  return combine(copied(refined_px, exec.pool), verdicts, exec);
 }
 
 Ground ground_of(const std::variant<const DisparityMap*, View<const float>>& disparity,
@@ -203,10 +219,23 @@ Ground likely(const Ground& ground, const DisparityMap& disparity, const std::op
   return likely_ground(ground, disparity, rig, config, exec, textured_px, left);
 }
 
-}  // namespace
+// ---- the stages ----
 
-void bind_stages(py::module_& m) {
-  m.attr("stage_groups") = py::dict();
+/// The checks: name of the stage, name of the reason, and whether they judge the image, not its matches.
+py::list bind_checks(py::module_& m) {
+  py::list checks;
+  for_each_check(
+      Config(), [&]<class Input, class Section>(const char* name, Reject reason,
+                                                Image<Reject> (*check)(Input, const Section&, const Exec&),
+                                                const Section&, bool) {
+        stage(m, name, check);
+        checks.append(
+            py::make_tuple(name, choice_name(reason, kRejects), std::is_same_v<Input, View<const Gray>>));
+      });
+  return checks;
+}
+
+void bind_disparities(py::module_& m) {
   stage(m, "find_epipolar_offset", &find_epipolar_offset);
   stage(m, "shift_rows", &shift_rows);
   stage(m, "correct_epipolar", &correct_epipolar);
@@ -214,18 +243,13 @@ void bind_stages(py::module_& m) {
   stage(m, "match_windows", &match_windows);
   stage(m, "match_semi_global", &match_semi_global);
   stage(m, "refine_subpixel", &refine_subpixel);
-
-  stage(m, "reject_inconsistent", &reject_inconsistent);
-  stage(m, "reject_ambiguous", &reject_ambiguous);
-  stage(m, "reject_flat", &reject_flat);
-  stage(m, "reject_textureless", &reject_textureless);
+  m.attr("CHECKS") = bind_checks(m);
   stage(m, "combine", &combined);
   stage(m, "external_disparity", &external_disparity);
   stage(m, "noise_sigma", &noise_sigma);
   stage(
-      m, "select_textured",
-      +[](View<const Gray> left, const DisparityMap& map, float noise, const Exec& exec) {
-        return select_textured({left, {}, noise}, map, {}, exec);
+      m, "select_textured", +[](const LeftImage& left, const DisparityMap& map, const Exec& exec) {
+        return select_textured(left, map, {}, exec);
       });
   stage(m, "reject_speckles", &reject_speckles);
   stage(
@@ -233,14 +257,18 @@ void bind_stages(py::module_& m) {
       +[](const Matches& matches, const DisparityMap& map, const MatchConfig& config, const Exec& exec) {
         return estimate_confidence(matches, map, confidence_model(config.method), exec);
       });
+}
 
+void bind_floor_and_walls(py::module_& m) {
   stage(m, "fit_ground", &ground_of);
   stage(m, "reject_below_ground", &reject_below_ground);
   stage(m, "label_floor", &label_floor);
   stage(m, "likely_ground", &likely);
   stage(m, "floor_under_reflections", &floor_under_reflections);
   stage(m, "fit_background", &fit_background);
+}
 
+void bind_regions(py::module_& m) {
   stage(
       m, "gradient", +[](const GreyOrSixteenths& image, float smoothing_sigma, const Exec& exec) {
         return std::visit([&](auto view) { return gradient(view, smoothing_sigma, exec); }, image);
@@ -261,13 +289,13 @@ void bind_stages(py::module_& m) {
   stage(m, "apply_merges", &apply_merges);
   stage(m, "segment_intensity", &segment_intensity);
   stage(m, "segment_disparity", &segment_disparity);
+  stage(m, "fuse", &fuse);
+}
 
-  stage(
-      m, "cut_superpixels",
-      +[](View<const Gray> left, View<const Rgb> rgb, View<const float> disparity_px, float noise,
-          const SuperpixelsConfig& config, const Exec& exec) {
-        return cut_superpixels(LeftImage{left, rgb, noise}, disparity_px, config, exec);
-      });
+void bind_region_tree(py::module_& m) {
+  stage(m, "cut_superpixels",
+        py::overload_cast<const LeftImage&, View<const float>, const SuperpixelsConfig&, const Exec&>(
+            &cut_superpixels));
   stage(m, "superpixel_regions", &superpixel_regions);
   stage(m, "hint_objects", &hint_numbers);
   stage(m, "grow_merge_tree", &merge_tree);
@@ -276,21 +304,15 @@ void bind_stages(py::module_& m) {
         return choose_objects(tree, object_classifier(), limits_of(config, size_of(tree)), exec);
       });
   stage(m, "object_regions", &object_regions);
+}
 
-  stage(m, "fuse", &fuse);
-  stage(
-      m, "measure",
-      +[](View<const RegionId> candidates, const std::vector<bool>& is_background,
-          const DisparityMap& disparity, View<const Gray> left, View<const Rgb> rgb, float noise,
-          const ObjectsConfig& config, const Exec& exec) {
-        return measure(candidates, is_background, disparity, {left, rgb, noise}, config, exec);
-      });
-  stage(
-      m, "measure_chosen",
-      +[](View<const RegionId> chosen, const std::vector<float>& scores, const DisparityMap& disparity,
-          View<const Gray> left, View<const Rgb> rgb, float noise, const Exec& exec) {
-        return measure(chosen, scores, disparity, {left, rgb, noise}, exec);
-      });
+void bind_objects(py::module_& m) {
+  stage(m, "measure",
+        py::overload_cast<View<const RegionId>, const std::vector<bool>&, const DisparityMap&,
+                          const LeftImage&, const ObjectsConfig&, const Exec&>(&measure));
+  stage(m, "measure_chosen",
+        py::overload_cast<View<const RegionId>, const std::vector<float>&, const DisparityMap&,
+                          const LeftImage&, const Exec&>(&measure));
   stage(
       m, "refine_objects",
       +[](Objects objects, const DisparityMap& disparity, View<const Gray> left, View<const Gray> right,
@@ -298,16 +320,18 @@ void bind_stages(py::module_& m) {
         return refine_objects(std::move(objects), disparity, left, right, disparity_bias_trees(), exec);
       });
   stage(m, "locate", &locate);
-  stage(
-      m, "label_obstacles",
-      +[](const Objects& objects, const DisparityMap& disparity, View<const float> confidence,
-          const Ground& ground, const Background& background, const Superpixels& superpixels,
-          View<const float> surface_disparity_px, const std::optional<StereoRig>& rig,
-          const GroundConfig& config, const Exec& exec) {
-        return label_obstacles({disparity, surface_disparity_px, confidence, ground, background,
-                                superpixels.labels, objects.labels},
-                               rig, config, exec);
-      });
+  stage(m, "label_obstacles", &label_obstacles);
+}
+
+}  // namespace
+
+void bind_stages(py::module_& m) {
+  m.attr("stage_groups") = py::dict();
+  bind_disparities(m);
+  bind_floor_and_walls(m);
+  bind_regions(m);
+  bind_region_tree(m);
+  bind_objects(m);
 }
 
 }  // namespace cairn::python

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""The stages of the method, by their C++ names. Each function here declares the signature and the help of one stage.
+"""The stages of the method, by their C++ names. Each function here declares the signature and the help of one stage;
+the checks of matches come from C++.
 
 The options come from the C++ function. A body adds checks, and may return other values for the C++ function.
 """
@@ -55,23 +56,6 @@ def refine_subpixel(matches: Matches) -> NDArray[numpy.float32]:
 
 
 # ---- disparities ----
-
-
-def reject_inconsistent(matches: Matches) -> NDArray[numpy.uint16]:
-    """Marks pixels whose match in the right image does not lead back to them: (H, W) uint16, Reject.left_right or 0."""
-
-
-def reject_ambiguous(matches: Matches) -> NDArray[numpy.uint16]:
-    """Marks pixels with more than one suitable minimum: (H, W) uint16, Reject.not_unique or 0."""
-
-
-def reject_flat(matches: Matches) -> NDArray[numpy.uint16]:
-    """Marks pixels with a constant correlation function: (H, W) uint16, Reject.flat or 0."""
-
-
-def reject_textureless(left: ImageLike) -> NDArray[numpy.uint16]:
-    """Marks pixels with too little texture (Moravec operator): (H, W) uint16, Reject.no_texture or 0. left: (H, W) or
-    (H, W, 3) uint8."""
 
 
 def combine(refined_px: DisparitiesLike, verdicts: Sequence[NDArray[numpy.uint16]]) -> DisparityMap:
@@ -182,7 +166,7 @@ def grow_near_to_far(graph: RegionGraph, *, mean_difference_max: float, deviatio
                      min_region_area: int = 0) -> NDArray[numpy.int32]:
     """The paper's region growing for disparity, from the nearest region to the farthest; otherwise like
     grow_statistical()."""
-    CHECKS["grow_statistical"](graph, mean_difference_max=mean_difference_max, deviation_max=deviation_max,
+    STAGES["grow_statistical"](graph, mean_difference_max=mean_difference_max, deviation_max=deviation_max,
                                sigma_min=sigma_min, min_region_area=min_region_area)
 
 
@@ -287,8 +271,25 @@ def label_obstacles(objects: Objects, disparity: DisparityLike, confidence: Disp
     floor_under_reflections()."""
 
 
+# ---- checks: listed in C++, for_each_check() ----
+
+
+def check(name, reason, is_of_image):
+    def of_matches(matches: Matches) -> NDArray[numpy.uint16]:
+        pass
+
+    def of_image(left: ImageLike) -> NDArray[numpy.uint16]:
+        pass
+
+    function = of_image if is_of_image else of_matches
+    function.__name__ = function.__qualname__ = name
+    function.__doc__ = f"A check, which marks pixels with Reject.{reason}: {SAYS[reason]}. Returns (H, W) uint16, the bit or 0."
+    return function
+
+
+SAYS = {reason: says for reason, _, says in _cairn.REASONS}
+globals().update({name: check(name, *of) for name, *of in _cairn.CHECKS})
 STAGES = {name: function for name, function in list(globals().items()) if name in _cairn.stage_groups}
-CHECKS = STAGES
 
 
 def count_of(labels):

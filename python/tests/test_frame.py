@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 import cairn
+from cairn import _cairn
 from conftest import same
 
-STAGES = """correct_epipolar match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine
+CHECKS = " ".join(name for name, *_ in _cairn.CHECKS)
+STAGES = f"""correct_epipolar match refine_subpixel {CHECKS} combine
     noise_sigma select_textured fit_ground likely_ground reject_below_ground reject_speckles fit_background
     floor_under_reflections superpixel_edges hint_objects cut_superpixels grow_merge_tree estimate_confidence choose_objects superpixels groups
     measure refine_objects locate label_obstacles rejected_obstacles""".split()
-PAPER_STAGES = """match refine_subpixel reject_inconsistent reject_ambiguous reject_flat reject_textureless combine noise_sigma
+PAPER_STAGES = f"""match refine_subpixel {CHECKS} combine noise_sigma
     fit_ground reject_below_ground reject_speckles label_floor segment_disparity segment_intensity fuse measure
     locate estimate_confidence label_obstacles rejected_obstacles""".split()
 

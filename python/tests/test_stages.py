@@ -14,7 +14,7 @@ from conftest import same, same_frame
 def test_every_stage_of_the_umbrella_header_is_bound(source):
     text = (source / "cairn" / "cairn.hpp").read_text()
     names = {name for words in re.findall(r"// ([a-z_, ]+)(?::.*)?$", text, re.M) for name in words.split(", ")}
-    for header in (source / "cairn" / "disparity").glob("*.hpp"):  # the checks, which it includes through Config
+    for header in (source / "cairn" / "stereo").glob("*.hpp"):  # the checks, which it includes through Config
         names |= set(re.findall(r"^Image<Reject> (reject_\w+)\(", header.read_text(), re.M))
     assert {"match", "fuse", "measure", "cut_superpixels", "segment", "diagnose", "reject_flat"} <= names
     assert [name for name in sorted(names) if not callable(getattr(cairn, name.strip(), None))] == []

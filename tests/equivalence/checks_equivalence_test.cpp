@@ -5,70 +5,21 @@
 #include <bit>
 #include <cairn/core/target.hpp>
 #include <limits>
-#include <random>
 
 #include "reference/checks.hpp"
 #include "support/grids.hpp"
+#include "support/random_input.hpp"
 
 namespace cairn {
 namespace {
 
 using grids::numbers;
 using grids::random_image;
+using random_input::random_matches;
+using random_input::sizes;
+using random_input::threads;
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
-
-Exec threads(int count) {
-  Exec exec = Exec::with_threads(count);
-  exec.pool = Pool::make();
-  return exec;
-}
-
-/// All widths around one, two and three vectors, and heights that threads share unevenly.
-std::vector<Size> sizes() {
-  std::vector<Size> all{{1, 1}, {2, 1}, {1, 2}, {1, 70}, {70, 1}, {37, 131}, {130, 97}};
-  for (int width = 3; width <= 67; width += 4) all.push_back({width, 2 + width % 7});
-  return all;
-}
-
-Image<float> random_floats(Size size, int values, float step, std::uint32_t seed) {
-  const Image<int> whole = random_image<int>(size, 0, values, seed);
-  Image<float> image(size);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) image(x, y) = static_cast<float>(whole(x, y)) * step;
-  }
-  return image;
-}
-
-/// Matches with few values, so that there are ties; with holes, and offsets to other rows.
-Matches random_matches(Size size, int band, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  Matches m{Image<std::int16_t>(size),
-            random_image<std::int16_t>(size, -2, 9, seed + 1),
-            {},
-            random_floats(size, 4, 0.25F, seed + 2),
-            random_floats(size, 5, 0.25F, seed + 3),
-            random_floats(size, 6, 0.2F, seed + 4),
-            {},
-            {}};
-  if (band > 0) m.row_offset = Image<std::int8_t>(size, 0, {});
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const int least = std::max(-2, x - (size.width - 1));
-      const int most = std::min(9, x);
-      const int d = least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
-      const bool none = random() % 8 == 0;
-      m.best(x, y) = none ? kNoMatch : static_cast<std::int16_t>(d);
-      if (none) m.cost(x, y) = m.runner_up(x, y) = m.mean_cost(x, y) = kNoCost;
-      if (random() % 8 == 0) m.runner_up(x, y) = kNoCost;
-      if (band > 0) {
-        const int row = y + static_cast<int>(random() % static_cast<unsigned>(2 * band + 1)) - band;
-        m.row_offset(x, y) = static_cast<std::int8_t>(std::clamp(row, 0, size.height - 1) - y);
-      }
-    }
-  }
-  return m;
-}
 
 /// Blocks of similar disparities with some noise and holes.
 DisparityMap random_map(Size size, std::uint32_t seed) {
@@ -143,22 +94,6 @@ TEST_P(ChecksEquivalence, LeftRight) {
         }
       }
     }
-  }
-}
-
-TEST_P(ChecksEquivalence, PerPixelChecksOfCosts) {
-  for (const Size size : sizes()) {
-    const Matches matches = random_matches(size, 0, 12);
-    reference::for_each_pixel_check([&](const auto& check) {
-      for (std::size_t i = 0; i < check.configs.size(); ++i) {
-        SCOPED_TRACE(text(size) + " " + check.name + " options " + std::to_string(i));
-        const auto expected = numbers(check.slow(matches, check.configs[i]));
-        for (const Target target : supported_targets()) {
-          exec.target = target;
-          EXPECT_EQ(numbers(check.fast(matches, check.configs[i], exec)), expected) << name(target);
-        }
-      }
-    });
   }
 }
 

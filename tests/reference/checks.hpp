@@ -9,11 +9,19 @@
 #include <cairn/stereo/texture.hpp>
 #include <vector>
 
-#include "pixel_checks.hpp"
-
-/// The slow twins of disparity/, except those of pixel_checks.hpp; the fast functions must give the same
-/// bits. Written one pixel at a time, each from scratch.
+/// The slow twins of the checks, except those of equivalence/pixel_checks_test.cpp; the fast functions must
+/// give the same bits. Written one pixel at a time, each from scratch.
 namespace cairn::reference {
+
+/// An image of judge(x, y).
+template <class Judge>
+Image<Reject> verdicts(Size size, Judge judge) {
+  Image<Reject> image(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) image(x, y) = judge(x, y);
+  }
+  return image;
+}
 
 Image<Reject> reject_inconsistent(const Matches& matches, const LeftRightConfig& config);
 Image<Reject> reject_textureless(View<const Gray> left, const TextureConfig& config);

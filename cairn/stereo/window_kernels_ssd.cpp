@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-// SPDX-FileCopyrightText: 2026 the cairn authors
-#define CAIRN_COST Cost::ssd
-#include <cairn/stereo/window_kernels_of_cost-inl.hpp>
