@@ -11,6 +11,17 @@
 
 namespace cairn::python {
 
+/// The source of follow(), a tuple in Python as are the files of its sensors.
+struct SourceArguments {
+  std::string calib;
+  std::string layout;
+  double rate_hz = 0;
+  std::string frames;
+  bool rectify = false;
+};
+CAIRN_TUPLE(SourceArguments, calib, layout, rate_hz, frames, rectify)
+CAIRN_TUPLE(live::SensorFiles, odometry, imu, poses, scan, map, is_map_read_only, start)
+
 CAIRN_NAMES(MotionRefusal, kMotionRefusals)
 CAIRN_NAMES(TrackState, kTrackStates)
 CAIRN_TUPLE(Point3, x, y, z)
@@ -233,19 +244,15 @@ class SequenceIterator {
   bool closed_ = false;
 };
 
-using File = std::optional<std::filesystem::path>;
 std::unique_ptr<SequenceIterator> follow(const FollowSettings& settings, const Exec& exec,
-                                         const std::string& source, const File& calib,
-                                         const std::string& layout, double rate_hz, const std::string& frames,
-                                         bool rectify, const File& odometry, const File& imu,
-                                         const File& poses, const File& map, bool is_read_only) {
+                                         const std::string& source, const SourceArguments& how,
+                                         const live::SensorFiles& files) {
   input::SourceOptions options;
-  if (calib) options.calib = calib->string();
-  options.layout = layout;
-  options.rate_hz = rate_hz;
-  options.rectify = rectify;
-  if (!frames.empty()) options.frames = input::parse_frame_range(frames);
-  const live::SensorFiles files{odometry, imu, poses, {}, map, is_read_only, {}};
+  options.calib = how.calib;
+  options.layout = how.layout;
+  options.rate_hz = how.rate_hz;
+  options.rectify = how.rectify;
+  if (!how.frames.empty()) options.frames = input::parse_frame_range(how.frames);
   return std::make_unique<SequenceIterator>(source, options, files, settings, exec);
 }
 

@@ -99,9 +99,7 @@ void save_png(const std::filesystem::path& path, const py::object& image) {
   });
 }
 
-}  // namespace
-
-void bind_frame(py::module_& m) {
+void bind_method(py::module_& m) {
   value_class<Frame>(m, "FrameData");
   auto provenance = value_class<output::Provenance>(m, "Provenance");
   shows(provenance, "config", [](const output::Provenance& p) { return PyConfig{p.preset, p.config, true}; });
@@ -130,7 +128,9 @@ void bind_frame(py::module_& m) {
         output::write_result(folder, left.gray(), left.rgb(), frame, how);
       },
       Released());
+}
 
+void bind_files_and_images(py::module_& m) {
   m.def(
       "load_picture", [](const std::filesystem::path& path) { return io::load_picture(path); }, Released());
   m.def(
@@ -168,6 +168,13 @@ void bind_frame(py::module_& m) {
         return output::draw_objects(left.gray(), left.rgb(), objects, floor);
       },
       Released());
+}
+
+}  // namespace
+
+void bind_frame(py::module_& m) {
+  bind_method(m);
+  bind_files_and_images(m);
 }
 
 }  // namespace cairn::python

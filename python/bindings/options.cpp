@@ -89,7 +89,9 @@ PyConfig PyConfig::suited(const io::Calibration& calibration) const {
   return wanted;
 }
 
-void bind_options(py::module_& m) {
+namespace {
+
+void bind_config_and_exec(py::module_& m) {
   auto option = value_class<OptionInfo>(m, "Option");
   shows(option, "_text", &OptionInfo::value);
   m.def("preset_names", &preset_names);
@@ -113,7 +115,9 @@ void bind_options(py::module_& m) {
   m.def("exec_of_all_processors", [] { return Exec::with_threads(0); });
   m.def("compiled_targets", [] { return names_of(compiled_targets()); });
   m.def("supported_targets", [] { return names_of(supported_targets()); });
+}
 
+void bind_rigs_and_pictures(py::module_& m) {
   value_class<StereoRig>(m, "Rig")
       .def(py::init([](float focal_px, float baseline_m, float cx_px, float cy_px, float doffs_px) {
         const StereoRig rig{focal_px, cx_px, cy_px, baseline_m, doffs_px};
@@ -150,6 +154,13 @@ void bind_options(py::module_& m) {
           [](const LoadedImage& self) { return py::make_tuple(self.copy()); },
           [](const py::tuple& state) { return LoadedImage(state[0].cast<py::array>(), false, {}); }));
   m.def("is_dense", &is_dense);
+}
+
+}  // namespace
+
+void bind_options(py::module_& m) {
+  bind_config_and_exec(m);
+  bind_rigs_and_pictures(m);
 }
 
 }  // namespace cairn::python

@@ -33,6 +33,7 @@ CAIRN_MEMBERS(Sharpness, _edges, _edge)
 CAIRN_MEMBERS(PairMeasures, size, identical, _textured_points, _rows, _disparities, _brightness,
               _left_exposure, _right_exposure, _left_sharpness, _right_sharpness)
 CAIRN_MEMBERS(LagChange, _from, _before, _after, _motion)
+CAIRN_TUPLE(TuneConfig, options, budget_s, evaluations, holdout, seed)
 CAIRN_MEMBERS(Synchrony, _frames, _motion, _agreement, _left_repeats, _right_repeats, _change)
 
 namespace {
@@ -153,9 +154,7 @@ class Interrupts {
 
 /// The command's report, and the configuration to use.
 std::pair<std::string, PyConfig> tuned(const std::vector<std::pair<std::string, py::object>>& frames,
-                                       const PyConfig& base, const Exec& exec,
-                                       const std::vector<std::string>& wanted, double budget_s,
-                                       int evaluations, double holdout, std::uint32_t seed,
+                                       const PyConfig& base, const Exec& exec, const TuneConfig& search,
                                        const py::object& progress) {
   std::vector<TuningFrame> borrowed;
   std::vector<std::string> names;
@@ -178,7 +177,6 @@ std::pair<std::string, PyConfig> tuned(const std::vector<std::pair<std::string, 
     if (!py::reinterpret_steal<py::object>(PyObject_CallOneArg(progress.ptr(), words.ptr())))
       interrupts.take();
   };
-  const TuneConfig search{wanted, budget_s, evaluations, holdout, seed};
   const Tuning found = released([&] {
     return tune(borrowed, search, exec, {[&] { return interrupts.asked(); }, tell});
   });
@@ -190,12 +188,10 @@ std::pair<std::string, PyConfig> tuned(const std::vector<std::pair<std::string, 
   best.config = with_settings(base.config, found.settings());
   for (const Setting& setting : found.settings())
     best.range_given |= setting.option == "match.num_disparities";
-  return {output::tuning_json(found, names, seed), std::move(best)};
+  return {output::tuning_json(found, names, search.seed), std::move(best)};
 }
 
-}  // namespace
-
-void bind_scores(py::module_& m) {
+void bind_evaluation(py::module_& m) {
   auto disparities = value_class<DisparityErrors>(m, "DisparityErrors");
   disparities.def(py::self += py::self);
   shows(disparities, "density", &DisparityErrors::density);
@@ -219,7 +215,9 @@ void bind_scores(py::module_& m) {
       },
       Released());
   m.def("summarise", &summary_of);
+}
 
+void bind_diagnosis(py::module_& m) {
   auto measures = value_class<PairMeasures>(m, "PairMeasures");
   shows(measures, "disparities_px",
         [](const PairMeasures& self) { return Numbers<float>{self.disparities_px}; });
@@ -238,7 +236,9 @@ void bind_scores(py::module_& m) {
   m.def("diagnosis_limits", &diagnosis_limits);
   m.def("faults_of", &faults_of);
   m.def("fault_of", &fault_of);
+}
 
+void bind_tuning(py::module_& m) {
   m.def("tuning_frames", [](const std::filesystem::path& folder, bool truth) {
     std::vector<py::dict> frames;
     for (const io::FrameFiles& files : io::find_frames(folder)) frames.push_back(read_frame(files, truth));
@@ -256,6 +256,14 @@ void bind_scores(py::module_& m) {
     return names;
   });
   m.def("tune", &tuned);
+}
+
+}  // namespace
+
+void bind_scores(py::module_& m) {
+  bind_evaluation(m);
+  bind_diagnosis(m);
+  bind_tuning(m);
 }
 
 }  // namespace cairn::python

@@ -5,8 +5,9 @@
 #include "bindings.hpp"
 
 namespace cairn::python {
+namespace {
 
-void bind_values(py::module_& m) {
+void bind_disparities(py::module_& m) {
   value_class<EpipolarOffset>(m, "EpipolarOffset").def(py::init([](float rows, float rows_per_px) {
     return EpipolarOffset{rows, rows_per_px, 0, 0, EpipolarOutcome::corrected};
   }));
@@ -22,7 +23,9 @@ void bind_values(py::module_& m) {
     reasons.append(py::make_tuple(std::string(name), int(bit), std::string(reason->says)));
   }
   m.attr("REASONS") = reasons;
+}
 
+void bind_floor_and_walls(py::module_& m) {
   value_class<GroundPlane>(m, "GroundPlane").def("_disparity", &GroundPlane::disparity_px);
   value_class<Ground>(m, "Ground");
   auto floor = value_class<FloorFrame>(m, "FloorFrame");
@@ -31,7 +34,9 @@ void bind_values(py::module_& m) {
   shows(floor, "_matrix", &FloorFrame::floor_from_camera);
   m.def("floor_frame", py::overload_cast<const GroundPlane&, const StereoRig&>(&floor_frame));
   value_class<Background>(m, "Background").def("_disparity", &Background::disparity_px);
+}
 
+void bind_regions(py::module_& m) {
   value_class<Region>(m, "Region");
   value_class<Segmentation>(m, "Segmentation");
   value_class<Basins>(m, "Basins");
@@ -52,7 +57,9 @@ void bind_values(py::module_& m) {
   });
   value_class<ChosenObjects>(m, "ChosenObjects");
   value_class<Fusion>(m, "Fusion");
+}
 
+void bind_objects(py::module_& m) {
   auto box = value_class<FloorBox>(m, "FloorBox");
   shows(box, "_covariance", [](const FloorBox& self) { return self.centre_covariance_m2; });
   value_class<Object>(m, "Object");
@@ -70,6 +77,15 @@ void bind_values(py::module_& m) {
     return Numbers<std::int8_t>{self.cells, {self.height, self.width}};
   });
   value_class<StereoResult>(m, "StereoResult");
+}
+
+}  // namespace
+
+void bind_values(py::module_& m) {
+  bind_disparities(m);
+  bind_floor_and_walls(m);
+  bind_regions(m);
+  bind_objects(m);
 }
 
 }  // namespace cairn::python

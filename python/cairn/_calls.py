@@ -369,39 +369,38 @@ class Report:
         return known[name]
 
 
-def describes(cls=None, base=None):
-    """Decorates a class whose annotated attributes are a description, or a description and a function of the object.
+def doc(words, get=None):
+    """An attribute of a described class: its help, and a function of the object unless C++ or `_data` has it."""
+    return property(get, doc=words)
 
-    Adds these attributes and the methods, including those of `base`, to `cls`, a C++ class; __init__ then returns the
-    arguments of its constructor. Without `cls`, attributes are by default those of the object's `_data`.
+
+def describes(cls=None, base=None, groups=None):
+    """Decorates a class that describes a class: its doc() attributes and its methods.
+
+    Adds these, and the methods of `base`, to `cls`, a C++ class, whose constructor is then `_start`. Without `cls`,
+    attributes are by default those of the object's `_data`. groups: groups of the constructor's options.
     """
 
     def onto(description):
         target, name = cls or description, description.__name__
         target._shown, target._is_report = vars(description).get("__annotations__", {}), base is Report
         for attribute in target._shown:
-            words, get = vars(description)[attribute], None
-            if isinstance(words, tuple):
-                words, get = words
-            get = get or (vars(cls)[attribute].fget if cls else operator.attrgetter("_data." + attribute))
-            setattr(target, attribute, property(get, doc=words))
+            given = vars(description)[attribute]
+            get = given.fget or (vars(cls)[attribute].fget if cls else operator.attrgetter("_data." + attribute))
+            setattr(target, attribute, property(get, doc=given.__doc__))
+        if cls and "__init__" in vars(description):
+            cls._start = cls.__init__
         members = {**(vars(base) if base else {}), "__repr__": own_repr, **vars(description)}
         for key, member in members.items():
             if isinstance(member, staticmethod):
                 setattr(target, key, staticmethod(checked(member.__func__, f"{name}.{key}")))
             elif inspect.isfunction(member):
-                is_plain = hasattr(member, "groups") or (key.startswith("_") and key not in ("__init__", "__getitem__"))
-                made = member if is_plain else checked(member, name if key == "__init__" else f"{name}.{key}")
-                setattr(target, key, starting(made, target.__init__) if cls and key == "__init__" else made)
+                if key == "__init__":
+                    member = checked(member, name, groups=groups)
+                elif key == "__getitem__" or not key.startswith("_"):
+                    member = checked(member, f"{name}.{key}")
+                setattr(target, key, member)
         target.__doc__, target.__module__, CLASSES[name] = inspect.cleandoc(description.__doc__), "cairn", target
         return target
 
     return onto
-
-
-def starting(made, of_cpp):
-    @functools.wraps(made)
-    def start(self, *args, **named):
-        of_cpp(self, *made(self, *args, **named))
-
-    return start

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import _cairn
-from ._calls import ALL_GROUPS, GROUPS, ArgumentError, checked, describes, image, of_cpp, shown
+from ._calls import ALL_GROUPS, GROUPS, ArgumentError, checked, describes, doc, image, of_cpp, shown
 from ._cairn import Error
 from ._frame import Frame
 from ._options import base_of, settings_of
@@ -63,85 +63,86 @@ class Track:
     """An object tracked over time. Metric values are in the map frame unless stated otherwise: x forward, y left, z up,
     origin on the floor below the camera of the first frame."""
 
-    id: int = "track id, from 1; never reused in a run"
-    state: str = "'tentative', 'confirmed', 'occluded', 'out_of_view', 'lost' or 'dead'"
-    is_moving: bool = "True if the object itself moves, not only the camera"
-    object: int = "id of its Object in this frame; 0 = not seen"
-    parts: List[int] = "ids of further objects in this frame that are parts of it"
-    is_joined: bool = "True if it forms one object with another track in this frame"
-    position_m: Optional[Tuple[float, float, float]] = "(x, y, z), m; None without a rig or until one is measured"
-    covariance_m2: Optional[NDArray[numpy.float64]] = "3 x 3 covariance of position_m, m²; None without a rig"
-    velocity_m_s: Optional[Tuple[float, float, float]] = "(x, y, z), m/s; 0 if static; None without a rig"
-    extent_m: Optional[Tuple[float, float, float]] = (
+    id: int = doc("track id, from 1; never reused in a run")
+    state: str = doc("'tentative', 'confirmed', 'occluded', 'out_of_view', 'lost' or 'dead'")
+    is_moving: bool = doc("True if the object itself moves, not only the camera")
+    object: int = doc("id of its Object in this frame; 0 = not seen")
+    parts: List[int] = doc("ids of further objects in this frame that are parts of it")
+    is_joined: bool = doc("True if it forms one object with another track in this frame")
+    position_m: Optional[Tuple[float, float, float]] = doc("(x, y, z), m; None without a rig or until one is measured")
+    covariance_m2: Optional[NDArray[numpy.float64]] = doc("3 x 3 covariance of position_m, m²; None without a rig")
+    velocity_m_s: Optional[Tuple[float, float, float]] = doc("(x, y, z), m/s; 0 if static; None without a rig")
+    extent_m: Optional[Tuple[float, float, float]] = doc(
         "(x, y, z) size of the box around its points in the camera frame, m; None without a rig")
-    confidence: float = "0 to 1, smoothed"
-    hits: int = "number of frames in which it was seen"
-    misses: int = "number of frames since it was last seen in which it should have been visible"
-    first_ns: int = "stamp of its first frame, ns"
-    last_ns: int = "stamp of the frame in which it was last seen, ns"
+    confidence: float = doc("0 to 1, smoothed")
+    hits: int = doc("number of frames in which it was seen")
+    misses: int = doc("number of frames since it was last seen in which it should have been visible")
+    first_ns: int = doc("stamp of its first frame, ns")
+    last_ns: int = doc("stamp of the frame in which it was last seen, ns")
 
 
 @describes(_cairn.Motion)
 class Motion:
     """The camera motion estimated from one frame, or the reason why it was refused."""
 
-    now_from_before: NDArray[numpy.float64] = (
+    now_from_before: NDArray[numpy.float64] = doc(
         "4 x 4 transform of points from the previous camera frame to this one; a substitute if refused")
-    covariance: NDArray[numpy.float64] = (
+    covariance: NDArray[numpy.float64] = doc(
         "6 x 6 covariance of the pose relative to the keyframe, translation (m) before rotation (rad)")
-    refusal: str = "'none' if the motion was estimated, else the reason: 'few_points', 'no_rig', …"
-    is_new_keyframe: bool = "True if this frame is the keyframe of the next motions"
-    is_new_segment: bool = "True if only a guess relates the poses from here on to the earlier ones"
-    followed: int = "number of tracked corners"
-    inliers: int = "number of corners consistent with the motion"
-    inlier_share: float = "0 to 1: share of inliers among the tracked corners"
-    chi2_per_dof: float = "chi-squared per degree of freedom; 1 if errors are as large as assumed"
+    refusal: str = doc("'none' if the motion was estimated, else the reason: 'few_points', 'no_rig', …")
+    is_new_keyframe: bool = doc("True if this frame is the keyframe of the next motions")
+    is_new_segment: bool = doc("True if only a guess relates the poses from here on to the earlier ones")
+    followed: int = doc("number of tracked corners")
+    inliers: int = doc("number of corners consistent with the motion")
+    inlier_share: float = doc("0 to 1: share of inliers among the tracked corners")
+    chi2_per_dof: float = doc("chi-squared per degree of freedom; 1 if errors are as large as assumed")
 
 
 @describes(_cairn.MotionPrior)
 class MotionPrior:
     """The camera motion since the previous frame, measured by another sensor."""
 
-    now_from_before: NDArray[numpy.float64] = (
+    now_from_before: NDArray[numpy.float64] = doc(
         "4 x 4 float64: transform of points from the previous camera frame to this one")
-    covariance: NDArray[numpy.float64] = "6 x 6 float64, translation (m) before rotation (rad)"
-    kind: str = "'wheels' or 'gyroscope'", lambda self: "gyroscope" if self._is_gyroscope else "wheels"
+    covariance: NDArray[numpy.float64] = doc("6 x 6 float64, translation (m) before rotation (rad)")
+    kind: str = doc("'wheels' or 'gyroscope'", lambda self: "gyroscope" if self._is_gyroscope else "wheels")
 
     def __init__(self, now_from_before: MatrixLike, covariance: MatrixLike, kind: str = "wheels") -> None:
         """now_from_before: 4 x 4 transform of points from the previous camera frame to this one. covariance: 6 x 6,
         translation (m) before rotation (rad). kind: 'wheels', or 'gyroscope', of which only the rotation is used."""
         if kind not in ("wheels", "gyroscope"):
             raise Error(f"kind: found '{kind}', expected 'wheels' or 'gyroscope'")
-        return pose_from(now_from_before, "now_from_before"), matrix(covariance, "covariance", 6), kind == "gyroscope"
+        motion = pose_from(now_from_before, "now_from_before")
+        self._start(motion, matrix(covariance, "covariance", 6), kind == "gyroscope")
 
 
 @describes()
 class Step:
     """The results of one frame of a sequence."""
 
-    index: int = "frame number, from 0"
-    stamp_ns: int = "time of capture, ns"
-    seconds: float = "time of capture, s", lambda self: self.stamp_ns * 1e-9
-    is_lost: bool = "True if the camera pose is unknown"
-    map_from_camera: NDArray[numpy.float64] = (
+    index: int = doc("frame number, from 0")
+    stamp_ns: int = doc("time of capture, ns")
+    seconds: float = doc("time of capture, s", lambda self: self.stamp_ns * 1e-9)
+    is_lost: bool = doc("True if the camera pose is unknown")
+    map_from_camera: NDArray[numpy.float64] = doc(
         "4 x 4 float64: pose of the left camera, the transform of points from its frame to the map frame")
-    pose_covariance: NDArray[numpy.float64] = (
+    pose_covariance: NDArray[numpy.float64] = doc(
         "6 x 6 covariance of map_from_camera, translation (m) before rotation (rad)")
-    motion: Motion = "camera motion, a Motion"
-    tracks: List[Track] = "list of Track by id, including those out of view"
-    ids: NDArray[numpy.int64] = "(H, W) int64, read-only: track id of each pixel; 0 = none"
-    odometry_suspect: bool = "True if most tracks began to move at once; the camera motion is probably wrong"
-    reliability: Dict[str, Any] = (
+    motion: Motion = doc("camera motion, a Motion")
+    tracks: List[Track] = doc("list of Track by id, including those out of view")
+    ids: NDArray[numpy.int64] = doc("(H, W) int64, read-only: track id of each pixel; 0 = none")
+    odometry_suspect: bool = doc("True if most tracks began to move at once; the camera motion is probably wrong")
+    reliability: Dict[str, Any] = doc(
         "reliability of the frame: value (0 ... 1 or None), the witnesses whose geometric mean it is, and the name of "
         "the weakest one; steadiness, for comparing settings; is_unreliable, after ten weak frames")
-    control: Optional[Dict[str, Any]] = (
+    control: Optional[Dict[str, Any]] = doc(
         "better option found at this frame, or None: option, value, before, lead (share) and is_set "
         "(control={'method': 'watch'} or 'tune')")
-    landmarks: Dict[int, int] = "landmark id by track id; only from follow()", lambda self: self._landmarks
-    events: List[Tuple[str, int]] = (
+    landmarks: Dict[int, int] = doc("landmark id by track id; only from follow()", lambda self: self._landmarks)
+    events: List[Tuple[str, int]] = doc(
         "changes of landmarks: (kind, landmark id), kind 'new', 'moved', 'gone', 'back' or 'relocated'; "
         "only from follow()", lambda self: self._events)
-    frame: Frame = "results of the pair, a Frame", lambda self: Frame._of(self._left, self._data.frame, self._how)
+    frame: Frame = doc("results of the pair, a Frame", lambda self: Frame._of(self._left, self._data.frame, self._how))
 
     @classmethod
     def _of(cls, left, data, how, line, landmarks, events):
@@ -161,29 +162,20 @@ class Step:
         return _cairn.png_bytes(self.overlay())
 
 
-ABOUT = ("preset, config (a Config or a file name) and options are those of segment(), plus the groups of\n"
-         "follow_options(): tracking={'min_hits': 2}.")
-
-
-def start_follower(self, rig: RigLike = None, *, preset: str = "default", config: Union[Config, PathLike, None] = None,
-                   exec: Optional[Exec] = None, **options) -> None:
-    self._calibration, self._exec = rig, exec
-    self._pairs = _cairn.Pairs(settings(config, preset, options), rig, exec)
-
-
-start_follower.__name__ = "__init__"
-start_follower.__doc__ = f"""rig: a Rig, a Calibration or None; without one there are ids, but no metres and no motion.
-Raises cairn.Error for invalid input.
-{ABOUT}"""
-
-
-@describes()
+@describes(groups=ALL_GROUPS)
 class Follower:
     """Tracks the camera and the objects through a sequence, pair by pair."""
 
-    rig: Optional[Rig] = "Rig used for measurements, or None", lambda self: self._calibration.rig
+    rig: Optional[Rig] = doc("Rig used for measurements, or None", lambda self: self._calibration.rig)
 
-    __init__ = checked(start_follower, "Follower", groups=ALL_GROUPS)
+    def __init__(self, rig: RigLike = None, *, preset: str = "default", config: Union[Config, PathLike, None] = None,
+                 exec: Optional[Exec] = None, **options) -> None:
+        """rig: a Rig, a Calibration or None; without one there are ids, but no metres and no motion.
+        Raises cairn.Error for invalid input.
+        preset, config (a Config or a file name) and options are those of segment(), plus the groups of
+        follow_options(): tracking={'min_hits': 2}."""
+        self._calibration, self._exec = rig, exec
+        self._pairs = _cairn.Pairs(settings(config, preset, options), rig, exec)
 
     def next(self, left: ImageLike, right: ImageLike, stamp_ns: Optional[Any] = None, *, seconds: Optional[float] = None,
              prior: Optional[MotionPrior] = None, pose: Optional[MatrixLike] = None, bgr: bool = False) -> Step:
@@ -208,11 +200,11 @@ class Follower:
 class Following:
     """Result of follow(): an iterator of Steps over a source."""
 
-    rig: Optional[Rig] = "Rig of the source, or None", lambda self: self._sequence.rig()
-    size: Optional[int] = "largest number of frames, for videos an estimate; None if unknown", lambda self: self._sequence.size()
-    remarks: List[Tuple[str, int]] = (
+    rig: Optional[Rig] = doc("Rig of the source, or None", lambda self: self._sequence.rig())
+    size: Optional[int] = doc("largest number of frames, for videos an estimate; None if unknown", lambda self: self._sequence.size())
+    remarks: List[Tuple[str, int]] = doc(
         "remarks on frames of the source so far: (text, number of frames)", lambda self: self._sequence.remarks())
-    ended_early: str = "why the source ended early; '' if it did not", lambda self: self._sequence.ended_early()
+    ended_early: str = doc("why the source ended early; '' if it did not", lambda self: self._sequence.ended_early())
 
     def __iter__(self) -> Following:
         return self
@@ -240,23 +232,25 @@ def follow(source: PathLike, *, calib: Optional[PathLike] = None, layout: str = 
            poses_file: Optional[PathLike] = None, map_file: Optional[PathLike] = None, read_only: bool = False,
            preset: str = "default", config: Union[Config, PathLike, None] = None, exec: Optional[Exec] = None,
            **options) -> Following:
+    """Tracks camera and objects through a whole sequence. Returns a Following, an iterator of Steps.
+    source: a folder of frames, a folder of KITTI or EuRoC, 'LEFT,RIGHT', or a video with layout (docs/sequences.md). calib:
+    replaces the calibration of the source. frames: 'A:B:STEP'. rectify: True for raw images. odometry_file, imu_file,
+    poses_file: motion measured by other sensors. map_file: landmarks to recognise and to extend; read_only: leaves it
+    unchanged. The arguments are the options of `cairn follow` and give the same steps.
+    preset, config (a Config or a file name) and options are those of segment(), plus the groups of
+    follow_options(): tracking={'min_hits': 2}."""
     if sum(file is not None for file in (odometry_file, imu_file, poses_file)) > 1:
         raise Error("odometry_file, imu_file, poses_file: found more than one, expected one of the three")
     if read_only and map_file is None:
         raise Error("read_only: found True without map_file, expected both")
     following = Following()
     following._exec = exec
-    following._sequence = _cairn.follow(settings(config, preset, options), exec, source, calib, layout, rate_hz, frames, rectify,
-                                        odometry_file, imu_file, poses_file, map_file, read_only)
+    following._sequence = _cairn.follow(settings(config, preset, options), exec, source,
+                                        (calib or "", layout, rate_hz, frames, rectify),
+                                        (odometry_file, imu_file, poses_file, None, map_file, read_only, None))
     return following
 
 
-follow.__doc__ = f"""Tracks camera and objects through a whole sequence. Returns a Following, an iterator of Steps.
-source: a folder of frames, a folder of KITTI or EuRoC, 'LEFT,RIGHT', or a video with layout (docs/sequences.md). calib:
-replaces the calibration of the source. frames: 'A:B:STEP'. rectify: True for raw images. odometry_file, imu_file,
-poses_file: motion measured by other sensors. map_file: landmarks to recognise and to extend; read_only: leaves it
-unchanged. The arguments are the options of `cairn follow` and give the same steps.
-{ABOUT}"""
 follow = checked(follow, groups=ALL_GROUPS)
 
 

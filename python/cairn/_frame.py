@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import _cairn
-from ._calls import NO_EXEC, checked, describes, numbers, of_cpp, whole
+from ._calls import NO_EXEC, checked, describes, doc, numbers, of_cpp, whole
 from ._calls import image as picture
 from ._cairn import Error
 from ._options import config_of
@@ -24,39 +24,39 @@ class Frame:
     padded; array.copy() returns a writable array. The frame keeps the left image for overlay(): the array itself, not a
     copy. In a notebook it is displayed as overlay()."""
 
-    disparity: NDArray[numpy.float32] = "float32, px; NaN = hole, see `reject`", lambda self: self.disparity_map.disparity_px
-    reject: NDArray[numpy.uint16] = (
+    disparity: NDArray[numpy.float32] = doc("float32, px; NaN = hole, see `reject`", lambda self: self.disparity_map.disparity_px)
+    reject: NDArray[numpy.uint16] = doc(
         "uint16, why there is no disparity: bits of cairn.Reject; 0 = valid", lambda self: self.disparity_map.reject)
-    confidence: Optional[NDArray[numpy.float32]] = (
+    confidence: Optional[NDArray[numpy.float32]] = doc(
         "float32, 0 to 1: probability that the disparity is within 1 px of the truth; 0 in holes. "
         "None without matching")
-    floor: Optional[NDArray[numpy.uint8]] = "uint8, 255 = floor, else 0; None if no floor was labelled"
-    objects_map: NDArray[numpy.int32] = (
+    floor: Optional[NDArray[numpy.uint8]] = doc("uint8, 255 = floor, else 0; None if no floor was labelled")
+    objects_map: NDArray[numpy.int32] = doc(
         "int32, object id of each pixel; 0 = none. `frame.objects_map == object.id` is a mask",
         lambda self: self.objects.labels)
-    objects: Objects = "Objects, nearest first"
-    space: NDArray[numpy.uint8] = "uint8, class of each pixel: 255 = obstacle, object or not; 128 = floor; 0 = unknown"
-    left_out: List[LeftOut] = "list of LeftOut: obstacles that are not objects, nearest first, and why"
-    floor_frame: Optional[FloorFrame] = (
+    objects: Objects = doc("Objects, nearest first")
+    space: NDArray[numpy.uint8] = doc("uint8, class of each pixel: 255 = obstacle, object or not; 128 = floor; 0 = unknown")
+    left_out: List[LeftOut] = doc("list of LeftOut: obstacles that are not objects, nearest first, and why")
+    floor_frame: Optional[FloorFrame] = doc(
         "floor frame, in metres, a FloorFrame; None without a rig or a ground",
         lambda self: _cairn.floor_of(self._data, self._how))
-    disparity_map: DisparityMap = "disparity and reject as a DisparityMap, the input of stages"
-    ground: Ground = "floor plane, or why there is none"
-    by_intensity: Optional[Segmentation] = (
+    disparity_map: DisparityMap = doc("disparity and reject as a DisparityMap, the input of stages")
+    ground: Ground = doc("floor plane, or why there is none")
+    by_intensity: Optional[Segmentation] = doc(
         "Segmentation of the image by intensity; None with pipeline.method=region_tree", made_by("by_intensity"))
-    by_disparity: Optional[Segmentation] = (
+    by_disparity: Optional[Segmentation] = doc(
         "Segmentation by disparity; None with pipeline.method=region_tree", made_by("by_disparity"))
-    fusion: Optional[Fusion] = "Fusion of both; None with pipeline.method=region_tree", made_by("fusion")
-    superpixels: Optional[Segmentation] = (
+    fusion: Optional[Fusion] = doc("Fusion of both; None with pipeline.method=region_tree", made_by("fusion"))
+    superpixels: Optional[Segmentation] = doc(
         "superpixels as a Segmentation; None with pipeline.method=paper", made_by("superpixels"))
-    groups: Optional[Segmentation] = (
+    groups: Optional[Segmentation] = doc(
         "Segmentation: region 0 is the background, the others are the chosen objects; None with pipeline.method=paper",
         made_by("groups"))
-    epipolar: EpipolarOffset = "row offset of the right image, an EpipolarOffset"
-    rig: Optional[Rig] = "Rig used, or None", lambda self: self._how.rig
-    config: Config = "Config used", lambda self: self._how.config
-    timings: Dict[str, float] = "time of each stage, ms", lambda self: self._how.timings
-    shape: Tuple[int, int] = "(H, W)", lambda self: self.disparity.shape
+    epipolar: EpipolarOffset = doc("row offset of the right image, an EpipolarOffset")
+    rig: Optional[Rig] = doc("Rig used, or None", lambda self: self._how.rig)
+    config: Config = doc("Config used", lambda self: self._how.config)
+    timings: Dict[str, float] = doc("time of each stage, ms", lambda self: self._how.timings)
+    shape: Tuple[int, int] = doc("(H, W)", lambda self: self.disparity.shape)
 
     @classmethod
     def _of(cls, left, data, how):
@@ -156,9 +156,9 @@ class Segmenter:
     allocated (if earlier frames and their arrays have been released). Returns the same frames as segment(). Several
     threads may share one Segmenter."""
 
-    config: Config = "Config used", lambda self: self._config
-    rig: Optional[Rig] = "Rig used for measurements, or None", lambda self: self._calibration.rig
-    exec: Exec = "Exec used, with its own threads and pool of images", lambda self: self._exec
+    config: Config = doc("Config used", lambda self: self._config)
+    rig: Optional[Rig] = doc("Rig used for measurements, or None", lambda self: self._calibration.rig)
+    exec: Exec = doc("Exec used, with its own threads and pool of images", lambda self: self._exec)
 
     def __init__(self, rig: RigLike = None, *, preset: str = "default", config: Union[Config, PathLike, None] = None,
                  exec: Optional[Exec] = None, **options) -> None:

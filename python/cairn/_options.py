@@ -7,7 +7,7 @@ from __future__ import annotations
 import os
 
 from . import _cairn
-from ._calls import DEFAULT, GROUPS, OPTIONS, ArgumentError, checked, describes, of_cpp, shown
+from ._calls import DEFAULT, GROUPS, OPTIONS, ArgumentError, checked, describes, doc, of_cpp, shown
 from ._cairn import Error
 
 NAMES = {o.name for o in OPTIONS}
@@ -92,15 +92,15 @@ def values_by_group(options):
 class Option:
     """One option of the method, named as in the command and on the reference page."""
 
-    name: str = "group and name, e.g. 'match.window_size'"
-    group: str = "stage that it belongs to, e.g. 'match'", lambda self: self.name.partition(".")[0]
-    type: str = "'int', 'float', 'bool' or 'choice'"
-    default: Any = "value in the given preset", option_value
-    unit: str = "unit; may be empty"
-    range: str = "accepted values, e.g. '3 … 31, odd', '−1 = off, 0 … 64', 'sad|ssd|…'"
-    help: str = "short description"
-    needs: str = "condition under which it is read, e.g. 'match.method=window' or 'ground.source!=off'; '' = always"
-    active: bool = "True if the given preset reads it"
+    name: str = doc("group and name, e.g. 'match.window_size'")
+    group: str = doc("stage that it belongs to, e.g. 'match'", lambda self: self.name.partition(".")[0])
+    type: str = doc("'int', 'float', 'bool' or 'choice'")
+    default: Any = doc("value in the given preset", option_value)
+    unit: str = doc("unit; may be empty")
+    range: str = doc("accepted values, e.g. '3 … 31, odd', '−1 = off, 0 … 64', 'sad|ssd|…'")
+    help: str = doc("short description")
+    needs: str = doc("condition under which it is read, e.g. 'match.method=window' or 'ground.source!=off'; '' = always")
+    active: bool = doc("True if the given preset reads it")
 
 
 @describes(_cairn.Config)
@@ -110,12 +110,12 @@ class Config:
         cairn.Config('paper', match={'window_size': 11})
     Raises cairn.Error for an unknown name, a value out of range, or an option without effect."""
 
-    preset: str = "name of the preset it started from"
+    preset: str = doc("name of the preset it started from")
 
     def __init__(self, preset: str = "default", file: Optional[PathLike] = None, **options) -> None:
         """preset: one of preset_names(). file: name of a configuration file, or None. options: a dict for each group of
         options()."""
-        return preset, file, settings_of(options)
+        self._start(preset, file, settings_of(options))
 
     def __getitem__(self, name: str) -> Any:
         """The value of an option by its full name, e.g. 'match.window_size'."""
@@ -143,13 +143,13 @@ class Config:
 class Exec:
     """Execution settings: threads, instruction set and a pool of image buffers. They never change a result."""
 
-    threads: int = "number of threads, including the caller's; 1 or more"
-    target: str = "instruction set of the kernels"
-    heap_allocations: int = "number of image buffers that the pool has allocated on the heap"
+    threads: int = doc("number of threads, including the caller's; 1 or more")
+    target: str = doc("instruction set of the kernels")
+    heap_allocations: int = doc("number of image buffers that the pool has allocated on the heap")
 
     def __init__(self, threads: int = 0, target: str = "best") -> None:
         """threads: 0 = one per processor. target: 'best' or one of supported_targets()."""
-        return threads, target
+        self._start(threads, target)
 
     def __getstate__(self):
         return self.threads, self.target

@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 
 from . import _cairn
-from ._calls import NO_EXEC, STAGE_NAMED, ArgumentError, Report, checked, describes, image, of_cpp, real, shown
+from ._calls import NO_EXEC, STAGE_NAMED, ArgumentError, Report, checked, describes, doc, image, of_cpp, real, shown
 from ._cairn import DEFAULTS, Error
 from ._options import config_of, flat_config
 
@@ -18,63 +18,63 @@ from ._options import config_of, flat_config
 class DisparityErrors:
     """Disparity errors over the pixels with known truth. += adds the errors of another frame."""
 
-    known: int = "number of pixels with truth"
-    matched: int = "number of these with an estimated disparity"
-    density: float = "0 to 1: matched / known"
-    bad_of_matched: Dict[float, float] = "share of the matched pixels with a larger error, by threshold in px"
-    bad_of_known: Dict[float, float] = "the same share of the known pixels; a hole counts as bad"
-    mean_absolute_px: float = "mean of |ours - truth| over the matched pixels, px; NaN if no pixel is matched"
-    root_mean_square_px: float = "root mean square of the same, px; NaN if no pixel is matched"
-    sigma_px: float = "root mean square over errors of at most 1 px: sigma of a correct match"
+    known: int = doc("number of pixels with truth")
+    matched: int = doc("number of these with an estimated disparity")
+    density: float = doc("0 to 1: matched / known")
+    bad_of_matched: Dict[float, float] = doc("share of the matched pixels with a larger error, by threshold in px")
+    bad_of_known: Dict[float, float] = doc("the same share of the known pixels; a hole counts as bad")
+    mean_absolute_px: float = doc("mean of |ours - truth| over the matched pixels, px; NaN if no pixel is matched")
+    root_mean_square_px: float = doc("root mean square of the same, px; NaN if no pixel is matched")
+    sigma_px: float = doc("root mean square over errors of at most 1 px: sigma of a correct match")
 
 
 @describes(_cairn.TrueObjectScore)
 class TrueObjectScore:
     """The score of one true object."""
 
-    id: int = "id in the truth, from 1"
-    pixel_count: int = "area, px"
-    found: int = "id of the found object of greatest IoU; 0 = none"
-    iou: float = "0 to 1: intersection over union with `found`; 0 without overlap"
-    boundary_f: float = "0 to 1: harmonic mean of the shares of each outline within the tolerance of the other"
-    over_segmented: bool = "True if two or more found objects, each mostly on it, cover more than half of it"
-    under_segmented: bool = "True if more than half of it is in a found object with more than half of another, too"
-    error: float = "the paper's E, Eq. 5: 1 / IoU - 1; inf without overlap"
+    id: int = doc("id in the truth, from 1")
+    pixel_count: int = doc("area, px")
+    found: int = doc("id of the found object of greatest IoU; 0 = none")
+    iou: float = doc("0 to 1: intersection over union with `found`; 0 without overlap")
+    boundary_f: float = doc("0 to 1: harmonic mean of the shares of each outline within the tolerance of the other")
+    over_segmented: bool = doc("True if two or more found objects, each mostly on it, cover more than half of it")
+    under_segmented: bool = doc("True if more than half of it is in a found object with more than half of another, too")
+    error: float = doc("the paper's E, Eq. 5: 1 / IoU - 1; inf without overlap")
 
 
 @describes(_cairn.FoundObjectScore)
 class FoundObjectScore:
     """The score of one found object."""
 
-    id: int = "id of the found object, from 1"
-    pixel_count: int = "area outside don't-care pixels, px"
-    best: int = "id of the true object of greatest IoU; 0 = none"
-    iou: float = "0 to 1: intersection over union with `best`; 0 without overlap"
-    phantom: bool = "True if large enough and hardly on any true object"
+    id: int = doc("id of the found object, from 1")
+    pixel_count: int = doc("area outside don't-care pixels, px")
+    best: int = doc("id of the true object of greatest IoU; 0 = none")
+    iou: float = doc("0 to 1: intersection over union with `best`; 0 without overlap")
+    phantom: bool = doc("True if large enough and hardly on any true object")
 
 
 @describes(_cairn.ObjectErrors)
 class ObjectErrors:
     """The scores of the objects of one frame."""
 
-    truth: List[TrueObjectScore] = "list of TrueObjectScore"
-    ours: List[FoundObjectScore] = "list of FoundObjectScore"
+    truth: List[TrueObjectScore] = doc("list of TrueObjectScore")
+    ours: List[FoundObjectScore] = doc("list of FoundObjectScore")
 
 
 @describes(_cairn.ObjectSummary)
 class ObjectSummary:
     """The scores of many frames: counts, and means over all their objects."""
 
-    frames: int = "number of frames"
-    true_objects: int = "number of scored true objects"
-    our_objects: int = "number of found objects, except those mostly on don't-care pixels"
-    phantoms: int = "number of found objects that hardly overlap a true one"
-    mean_error: float = "mean of the paper's E, each capped at 2; 0 is best"
-    median_error: float = "median of the same, 0 to 2"
-    mean_iou: float = "mean IoU over all scored objects, 0 to 1"
-    mean_boundary_f: float = "mean boundary_f over all scored objects, 0 to 1"
-    recall_50: float = "share of the true objects found with IoU >= 0.5"
-    precision_50: float = "share of the found objects with IoU >= 0.5"
+    frames: int = doc("number of frames")
+    true_objects: int = doc("number of scored true objects")
+    our_objects: int = doc("number of found objects, except those mostly on don't-care pixels")
+    phantoms: int = doc("number of found objects that hardly overlap a true one")
+    mean_error: float = doc("mean of the paper's E, each capped at 2; 0 is best")
+    median_error: float = doc("median of the same, 0 to 2")
+    mean_iou: float = doc("mean IoU over all scored objects, 0 to 1")
+    mean_boundary_f: float = doc("mean boundary_f over all scored objects, 0 to 1")
+    recall_50: float = doc("share of the true objects found with IoU >= 0.5")
+    precision_50: float = doc("share of the found objects with IoU >= 0.5")
 
 
 @of_cpp
@@ -111,9 +111,9 @@ class PairMeasures:
     """Result of measure_pair(): the numbers of `cairn doctor --json` (docs/formats.md) as items and attributes, e.g.
     measures.offset_rows; None if not measured."""
 
-    size: Tuple[int, int] = "(width, height), px"
-    identical: bool = "True if both images are equal, pixel for pixel"
-    disparities_px: NDArray[numpy.float32] = (
+    size: Tuple[int, int] = doc("(width, height), px")
+    identical: bool = doc("True if both images are equal, pixel for pixel")
+    disparities_px: NDArray[numpy.float32] = doc(
         "float32, px, ascending: disparities of consistent points with similar neighbours; a copy")
 
     def disparity_px(self, share: float) -> float:
@@ -128,7 +128,7 @@ class Synchrony:
     """Result of measure_synchrony(), the synchronisation of both cameras of a sequence: the numbers of
     `cairn doctor --json` (docs/formats.md) as items and attributes; lag is the delay of the right camera in frames."""
 
-    tells: bool = "True if the numbers distinguish the lags; False with too little or too even motion"
+    tells: bool = doc("True if the numbers distinguish the lags; False with too little or too even motion")
 
 
 @describes(None, Report)
@@ -136,7 +136,7 @@ class Finding:
     """One fault of a rig, as in `cairn doctor --json` (docs/formats.md): severity, value, number, unit, says and remedy
     as items and attributes."""
 
-    kind: str = "name of the fault as in `cairn doctor`, e.g. 'cameras swapped'", lambda self: self["finding"]
+    kind: str = doc("name of the fault as in `cairn doctor`, e.g. 'cameras swapped'", lambda self: self["finding"])
 
 
 def report_of(cls, text, **more):
@@ -222,14 +222,14 @@ diagnose = checked(diagnose, more=STAGE_NAMED[:2], groups=["match"], is_stage=Tr
 class TuningFrame:
     """A pair to tune on, with its known ground truth. Borrows its arrays, as segment() does."""
 
-    name: str = "name in error messages; frames with the same name show the same scene", lambda self: self._name
-    objects: Optional[NDArray[numpy.int32]] = (
+    name: str = doc("name in error messages; frames with the same name show the same scene", lambda self: self._name)
+    objects: Optional[NDArray[numpy.int32]] = doc(
         "(H, W) int32, true object ids; None if unknown", lambda self: self._objects)
-    truth_px: Optional[NDArray[numpy.float32]] = (
+    truth_px: Optional[NDArray[numpy.float32]] = doc(
         "(H, W) float32, true disparities, px; None if unknown", lambda self: self._truth_px)
-    hidden: Optional[NDArray[numpy.uint8]] = (
+    hidden: Optional[NDArray[numpy.uint8]] = doc(
         "(H, W) uint8, non-zero = not seen by the right camera; None if unknown", lambda self: self._hidden)
-    partial: bool = "True if the truth may lack objects", lambda self: self._partial
+    partial: bool = doc("True if the truth may lack objects", lambda self: self._partial)
 
     def __init__(self, left: ImageLike, right: ImageLike, rig: RigLike = None, *, objects: Optional[LabelsLike] = None,
                  truth_px: Optional[FloatsLike] = None, hidden: MaskLike = None, partial: bool = False, name: str = "",
@@ -260,7 +260,7 @@ class Tuning:
     """Result of tune(): `config`, and the contents of `cairn tune --json` (docs/formats.md) as items and attributes:
     goal, found, tuned_on, held_out, gain, kept_because, …."""
 
-    config: Config = "Config to use: the tuned one, or the start if that is kept", lambda self: self._config
+    config: Config = doc("Config to use: the tuned one, or the start if that is kept", lambda self: self._config)
 
 
 @of_cpp
@@ -299,5 +299,5 @@ def tune(frames: Iterable[Union[TuningFrame, Tuple[ImageLike, ImageLike]]], *, o
     if seed < 0:
         raise Error(f"seed: found {seed}, expected 0 or more")
     base = config_of(config, preset, groups)
-    text, best = _cairn.tune(held, base, exec, options, budget_s, evaluations, holdout, seed, progress)
+    text, best = _cairn.tune(held, base, exec, (options, budget_s, evaluations, holdout, seed), progress)
     return report_of(Tuning, text, _config=best)
