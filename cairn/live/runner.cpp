@@ -222,8 +222,8 @@ void Runner::take_over(const std::optional<ControlEvent>& control) {
   if (!control || !control->is_set) return;
   const std::lock_guard lock(mutex_);
   FollowConfig changed = *config_;
-  if (value_of(changed.segmentation, control->arm.option) != control->before) return;
-  cairn::set(changed, control->arm.option, control->arm.value);
+  if (value_of(changed.segmentation, control->candidate.option) != control->before) return;
+  cairn::set(changed, control->candidate.option, control->candidate.value);
   config_ = std::make_shared<const FollowConfig>(std::move(changed));
   ++revision_;
 }

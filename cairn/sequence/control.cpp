@@ -96,7 +96,7 @@ std::vector<OptionCandidate> option_candidates(const Config& config, Size image,
   return candidates;
 }
 
-Gain gain_of(const CandidateScore& score) {
+CandidateGain gain_of(const CandidateScore& score) {
   constexpr double kOneSided95 = 1.645;
   constexpr double kMin = 1e-3;  // bounds the divisor for a configuration that finds nothing
   const std::size_t count = std::min(score.of_candidate.size(), score.of_present.size());
@@ -130,7 +130,7 @@ std::vector<CandidateScore> halved(std::vector<CandidateScore> round, float min_
 }
 
 bool is_better(const CandidateScore& score, const ControlConfig& config) {
-  const Gain gain = gain_of(score);
+  const CandidateGain gain = gain_of(score);
   return static_cast<int>(score.of_candidate.size()) >= config.window &&
          gain.mean >= min_gain(score.candidate, config.min_gain) && gain.low > 0;
 }

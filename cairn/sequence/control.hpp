@@ -76,11 +76,11 @@ struct CandidateScore {
 
 /// The relative gain in steadiness of the candidate over the present setting: the mean, and its one-sided lower 95
 /// % bound from paired differences; −1 below two frames.
-struct Gain {
+struct CandidateGain {
   double mean = -1;
   double low = -1;
 };
-Gain gain_of(const CandidateScore& score);
+CandidateGain gain_of(const CandidateScore& score);
 
 /// The survivors of a round of successive halving (Jamieson and Talwalkar 2016): at most half of the candidates,
 /// those with the highest gain, and none without a gain or, unless it restores, with less than half of

@@ -11,8 +11,8 @@
 #include <tuple>
 #include <utility>
 
-#include "evidence.hpp"
 #include "regions.hpp"
+#include "textured.hpp"
 
 namespace cairn::reference {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "space.hpp"
+#include "obstacles.hpp"
 
 #include <cmath>
 #include <map>

@@ -62,10 +62,10 @@ TEST(Arms, OmitChangesWithoutEffectOrOutOfRange) {
 }
 
 TEST(LeadOfAnArm, IsTheMeanOfPairedDifferencesOverThePresentsMean) {
-  const Gain gain = gain_of(score({1.2F, 2.2F, 3.2F}, {1, 2, 3}));
+  const CandidateGain gain = gain_of(score({1.2F, 2.2F, 3.2F}, {1, 2, 3}));
   EXPECT_NEAR(gain.mean, 0.1, 1e-6);
   EXPECT_NEAR(gain.low, 0.1, 1e-6);  // a constant lead
-  const Gain unsure = gain_of(score({2, 2, 2.6F}, {1, 2, 3}));
+  const CandidateGain unsure = gain_of(score({2, 2, 2.6F}, {1, 2, 3}));
   EXPECT_NEAR(unsure.mean, 0.1, 1e-6);
   EXPECT_LT(unsure.low, 0);
   EXPECT_EQ(gain_of(score({5}, {1})).mean, -1);  // one frame is no evidence
