@@ -147,9 +147,9 @@ TEST(FollowPage, ContainsTheTransformOfTheOdometryInTheMap) {
   const auto place = [&] {
     return Json::parse(encode_step(scene.step, "", scene.left, {}, {}, marked).facts).at("map_from_odom");
   };
-  EXPECT_EQ(io::place(), Json::parse(R"({"yaw_rad": 0.5, "position_m": [2, -1, 0]})"));
+  EXPECT_EQ(place(), Json::parse(R"({"yaw_rad": 0.5, "position_m": [2, -1, 0]})"));
   marked.state.is_located = false;
-  EXPECT_TRUE(io::place().is_null());
+  EXPECT_TRUE(place().is_null());
 }
 
 TEST(FollowPage, UnknownValuesAreNull) {
