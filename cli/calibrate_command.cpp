@@ -41,7 +41,7 @@ io::Board board_of(const CalibrateOptions& options) {
 struct Detections {
   Size size;
   std::vector<std::string> names;
-  std::vector<io::BoardSighting> list;
+  std::vector<io::BoardDetection> list;
   std::vector<std::string> without_board;
 
   [[nodiscard]] std::size_t pairs() const { return names.size() + without_board.size(); }

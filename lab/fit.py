@@ -152,7 +152,9 @@ SCORE = {"objective": "binary:logistic", "base_score": 0.5, "lambda": 2.0}
 BIAS = {"objective": "reg:pseudohubererror", "huber_slope": 0.2, "base_score": 0.0, "lambda": 3.0}
 
 
-def fitted(labels, weights, features, trees, depth, least_weight, eta, goal=SCORE):
+def fitted(labels, weights, features, shape, goal=SCORE):
+    """`shape`: number of trees, their depth, least weight of a leaf, learning rate."""
+    trees, depth, least_weight, eta = shape
     import xgboost  # only this function needs it
 
     data = xgboost.DMatrix(features, label=labels, weight=weights)
@@ -225,7 +227,7 @@ class Fitting:
             weights = head[:, 2] * self.weight[job]
             for fold in [*range(self.folds), *(["all"] if round_ == 1 else [])]:
                 take = self.fold[job] != fold if fold != "all" else job >= 0
-                model = fitted(head[take, 1], weights[take], features[take], PAIR_TREES, PAIR_DEPTH, 20, 0.12)
+                model = fitted(head[take, 1], weights[take], features[take], (PAIR_TREES, PAIR_DEPTH, 20, 0.12))
                 model.write(self.model("same_thing", fold))
                 self.gains["same_thing"] = shares_of(model.gains, self.pair_features)
                 say(f"pairs, round {round_ + 1}, without fold {fold}: {take.sum()} of them")
@@ -247,8 +249,8 @@ class Fitting:
         labels = 0.5 * (head[:, 1] >= 0.5) + 0.5 * (head[:, 1] >= 0.75)
         for fold in [*range(self.folds), "all"]:
             take = self.fold[job] != fold if fold != "all" else job >= 0
-            model = fitted(labels[take], self.weight[job][take], features[take], REGION_TREES, REGION_DEPTH, 15,
-                           0.07)
+            model = fitted(labels[take], self.weight[job][take], features[take],
+                           (REGION_TREES, REGION_DEPTH, 15, 0.07))
             model.write(self.model("whole_object", fold))
             self.gains["whole_object"] = shares_of(model.gains, self.region_features)
             say(f"regions, without fold {fold}: {take.sum()} of them")
@@ -271,7 +273,7 @@ class Fitting:
         for fold in [*range(self.folds), "all"]:
             take = object_fold != fold if fold != "all" else job >= 0
             model = fitted(np.clip(bias[take], -LARGEST_ERROR, LARGEST_ERROR), np.ones(take.sum()), features[take],
-                           BIAS_TREES, BIAS_DEPTH, 10, 0.1, BIAS)
+                           (BIAS_TREES, BIAS_DEPTH, 10, 0.1), BIAS)
             say(f"disparities, without fold {fold}: {take.sum()} objects")
             if fold != "all":
                 left[~take] -= beyond_doubt(model.predict(features[~take]))

@@ -64,7 +64,9 @@ def straight_line(x, y):
     return slope, at_zero, np.max(np.abs(at_zero + slope * x - y) / y)
 
 
-def growth(cairn, title, file, x_title, unit, unit_x, form, extents, x_of):
+def growth(cairn, title, file, axis, extents, x_of):
+    """`axis`: title of x, name of its unit, and its size, format of x in the table."""
+    x_title, unit, unit_x, form = axis
     x = [float(x_of(*extent)) for extent in extents]
     points = {p: [point(measured(cairn, *extent, p, 1, 1.5)) for extent in extents] for p in PRESETS}
     lines = {(p, part): straight_line(x, [of[part] for of in points[p]]) for p in PRESETS for part in PARTS}
@@ -89,10 +91,10 @@ def main():
     plots.mkdir(parents=True, exist_ok=True)
     tables, machine = zip(*(stage_table(cairn, preset) for preset in PRESETS))
     sizes = [((w, h), 64) for w, h in ((320, 240), (480, 360), (640, 480), (800, 600), (960, 720), (1280, 960))]
-    pixels = growth(cairn, "Time against pixels", plots / "pixels.png", "megapixels, 64 disparities", "megapixel", 1, ".2f", sizes,
+    pixels = growth(cairn, "Time against pixels", plots / "pixels.png", ("megapixels, 64 disparities", "megapixel", 1, ".2f"), sizes,
                     lambda size, n: 1e-6 * size[0] * size[1])
     ranges = [((640, 480), n) for n in range(32, 257, 32)]
-    disparities = growth(cairn, "Time against disparities", plots / "disparities.png", "disparities, 640x480", "64 disparities", 64, ".0f", ranges,
+    disparities = growth(cairn, "Time against disparities", plots / "disparities.png", ("disparities, 640x480", "64 disparities", 64, ".0f"), ranges,
                          lambda size, n: n)
     engines = "Not measured in this run: it needs OpenCV's calib3d and the data collection.\n"
     if len(sys.argv) == 5:

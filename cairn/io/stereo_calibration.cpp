@@ -66,7 +66,7 @@ RawCalibration with_rectification(RawCalibration raw) {
 }
 
 /// RMS of the row differences of rectified corners.
-double rows_error(std::span<const BoardSighting> sightings, const RawCalibration& raw) {
+double rows_error(std::span<const BoardDetection> sightings, const RawCalibration& raw) {
   const auto rectified = [](const Corners& corners, const RawCamera& camera) {
     std::vector<cv::Point2f> points;
     cv::undistortPoints(points_of(corners), points, matrix(camera.matrix, 3), camera.distortion,
@@ -75,7 +75,7 @@ double rows_error(std::span<const BoardSighting> sightings, const RawCalibration
   };
   double squares = 0;
   double count = 0;
-  for (const BoardSighting& sighting : sightings) {
+  for (const BoardDetection& sighting : sightings) {
     const auto left = rectified(sighting.left, raw.left);
     const auto right = rectified(sighting.right, raw.right);
     for (std::size_t i = 0; i < left.size(); ++i) {
@@ -95,7 +95,7 @@ std::vector<cv::Point2f> in_order_of(const std::vector<cv::Point2f>& left, std::
   return right;
 }
 
-StereoCalibration calibrate(std::span<const BoardSighting> sightings, const Board& board, Size image) {
+StereoCalibration calibrate(std::span<const BoardDetection> sightings, const Board& board, Size image) {
   std::vector<cv::Point3f> corners;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
@@ -106,7 +106,7 @@ StereoCalibration calibrate(std::span<const BoardSighting> sightings, const Boar
   const std::vector<std::vector<cv::Point3f>> boards(sightings.size(), corners);
   std::vector<std::vector<cv::Point2f>> left;
   std::vector<std::vector<cv::Point2f>> right;
-  for (const BoardSighting& sighting : sightings) {
+  for (const BoardDetection& sighting : sightings) {
     left.push_back(points_of(sighting.left));
     right.push_back(in_order_of(left.back(), points_of(sighting.right)));
   }
@@ -175,7 +175,8 @@ std::optional<Corners> find_board(View<const Gray> image, const Board& board) {
   });
 }
 
-StereoCalibration calibrate_stereo(std::span<const BoardSighting> sightings, const Board& board, Size image) {
+StereoCalibration calibrate_stereo(std::span<const BoardDetection> sightings, const Board& board,
+                                   Size image) {
   if (sightings.size() < kMinSightings) {
     throw Error("calibrating: the whole board is visible in " + std::to_string(sightings.size()) +
                 " pairs, expected at least " + std::to_string(kMinSightings) + ", preferably fifteen");

@@ -23,7 +23,7 @@ struct Board {
 };
 
 using Corners = std::vector<std::array<float, 2>>;  // px, row by row
-struct BoardSighting {
+struct BoardDetection {
   Corners left;
   Corners right;
 };
@@ -44,7 +44,7 @@ inline constexpr std::size_t kMinSightings = 3;
 
 /// Both cameras and their relative pose, from one board in several positions (Zhang 2000). Throws Error with
 /// fewer than kMinSightings, or if OpenCV finds no solution.
-StereoCalibration calibrate_stereo(std::span<const BoardSighting> sightings, const Board& board, Size image);
+StereoCalibration calibrate_stereo(std::span<const BoardDetection> sightings, const Board& board, Size image);
 
 /// Rectifies images of raw cameras.
 class Rectifier {

@@ -18,7 +18,7 @@ struct Rectifier::Maps {};
 std::optional<Corners> find_board(View<const Gray>, const Board&) {
   not_built_in();
 }
-StereoCalibration calibrate_stereo(std::span<const BoardSighting>, const Board&, Size) {
+StereoCalibration calibrate_stereo(std::span<const BoardDetection>, const Board&, Size) {
   not_built_in();
 }
 Rectifier::Rectifier(const RawCalibration&) {

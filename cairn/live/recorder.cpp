@@ -54,8 +54,8 @@ class Recording {
     }
     for (const Topic& topic : topics()) {
       if (topic.recorded == nullptr || !(options.what.*topic.recorded)) continue;
-      if (topic.declared == Declared::with_rig && !run.rig) continue;
-      const bool is_declared = topic.declared != Declared::with_first_message;
+      if (topic.declared == Announcement::with_rig && !run.rig) continue;
+      const bool is_declared = topic.declared != Announcement::with_first_message;
       channels_.emplace_back(&topic, is_declared ? declare(topic) : std::uint16_t{0});
     }
   }

@@ -179,7 +179,7 @@ std::string scene_schema() {
 
 template <ros::Message M>
 constexpr Topic of_ros(std::string_view name, decltype(Topic::make) make, bool RecordWhat::*recorded,
-                       int published = 0, int viewed = 0, Declared declared = Declared::always) {
+                       int published = 0, int viewed = 0, Announcement declared = Announcement::always) {
   return {.name = name,
           .type = M::kType,
           .schema = &schema_of<M>,
@@ -200,12 +200,12 @@ constexpr auto kClouds = &RecordWhat::clouds;
 constexpr std::array kTopics{
     // name, made by, recorded with, order on ROS 2, number in the view
     of_ros<ros::Image>("/stereo/left/image_rect", left, kInput),
-    of_ros<ros::Image>("/stereo/left/image_grey", left_grey, kInput, 0, 0, Declared::with_first_message),
+    of_ros<ros::Image>("/stereo/left/image_grey", left_grey, kInput, 0, 0, Announcement::with_first_message),
     of_ros<ros::Image>("/stereo/right/image_rect", right, kInput),
     of_ros<ros::CameraInfo>("/stereo/left/camera_info", camera_info<ros::Side::left>, kInput, 0, 0,
-                            Declared::with_rig),
+                            Announcement::with_rig),
     of_ros<ros::CameraInfo>("/stereo/right/camera_info", camera_info<ros::Side::right>, kInput, 0, 0,
-                            Declared::with_rig),
+                            Announcement::with_rig),
     of_ros<ros::Detection3DArray>("objects", objects, kObjects, 2, 5),
     of_ros<ros::String>("frames", frames, kObjects),
     of_ros<ros::String>("stats", stats, kObjects, 3),

@@ -35,7 +35,7 @@ using Message = std::optional<ros::Bytes>;  // nullopt if the frame lacks the da
 using MessagePtr = std::shared_ptr<const ros::Bytes>;
 
 /// When a recording declares a topic.
-enum class Declared : std::uint8_t { always, with_rig, with_first_message };
+enum class Announcement : std::uint8_t { always, with_rig, with_first_message };
 
 struct Topic {
   std::string_view name;  // "/tf"; without a slash, below the namespace of cairn: "objects" is /cairn/objects
@@ -46,7 +46,7 @@ struct Topic {
   bool RecordWhat::*recorded = nullptr;
   int published = 0;  // order of sending on ROS 2, from 1: small ones first; 0: not there
   int viewed = 0;     // number in the live view, from 1; 0: not there
-  Declared declared = Declared::always;
+  Announcement declared = Announcement::always;
   // Parts of MessageForm that change it.
   bool has_stride = false;
   bool has_holes = false;

@@ -30,14 +30,14 @@ std::int64_t most_resident_bytes() {
   return std::int64_t{1024} * usage.ru_maxrss;
 }
 
-struct Elapsed {
+struct TimedStage {
   double wall_ms = 0;
   double cpu_ms = 0;
   void add_to(Samples& samples) const {
     samples.wall_ms.push_back(wall_ms);
     samples.cpu_ms.push_back(cpu_ms);
   }
-  Elapsed& operator+=(const Elapsed& other) {
+  TimedStage& operator+=(const TimedStage& other) {
     wall_ms += other.wall_ms;
     cpu_ms += other.cpu_ms;
     return *this;
@@ -45,7 +45,7 @@ struct Elapsed {
 };
 
 template <class Work>
-Elapsed timed(const Work& work) {
+TimedStage timed(const Work& work) {
   const double cpu = process_ms();
   const auto wall = Clock::now();
   work();
@@ -62,7 +62,7 @@ class FrameClock {
     mark_ms_ = process_ms();
   }
   void operator()(std::string_view stage, double wall_ms) {
-    const Elapsed elapsed{wall_ms, process_ms() - mark_ms_};
+    const TimedStage elapsed{wall_ms, process_ms() - mark_ms_};
     const auto found = std::find_if(current_.begin(), current_.end(),
                                     [&](const auto& entry) { return entry.first == stage; });
     if (found == current_.end()) {
@@ -72,10 +72,10 @@ class FrameClock {
     }
     mark_ms_ = process_ms();
   }
-  [[nodiscard]] const std::vector<std::pair<std::string, Elapsed>>& stages() const { return current_; }
+  [[nodiscard]] const std::vector<std::pair<std::string, TimedStage>>& stages() const { return current_; }
 
  private:
-  std::vector<std::pair<std::string, Elapsed>> current_;
+  std::vector<std::pair<std::string, TimedStage>> current_;
   double mark_ms_ = 0;
 };
 
@@ -111,11 +111,11 @@ std::vector<Peer> prepare(std::span<const OpenCvMatcher> matchers, const StereoP
   return peers;
 }
 
-void add_frame(FrameTimes& all, const FrameClock& clock, const Elapsed& frame) {
+void add_frame(FrameTimes& all, const FrameClock& clock, const TimedStage& frame) {
   frame.add_to(all.frame);
-  Elapsed disparity;
+  TimedStage disparity;
   for (std::size_t i = 0; i < all.stages.size(); ++i) {
-    const Elapsed& elapsed = clock.stages().at(i).second;
+    const TimedStage& elapsed = clock.stages().at(i).second;
     elapsed.add_to(all.stages[i].times);
     if (all.stages[i].for_disparity) disparity += elapsed;
   }
@@ -155,7 +155,7 @@ FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& r
             std::chrono::duration<double>(Clock::now() - start).count() < limits.seconds);
   };
   while (in_time()) {
-    const Elapsed frame = run();
+    const TimedStage frame = run();
     add_frame(all, clock, frame);
     for (Peer& peer : peers) {
       if (peer.times.refusal.empty()) timed([&] { peer.matcher.compute(pair); }).add_to(peer.times.times);

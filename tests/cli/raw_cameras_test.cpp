@@ -229,11 +229,11 @@ TEST(Calibration, RecoversSimulatedCameras) {
   // Corners of a board in eight poses, seen by two cameras without distortion, 0.2 m apart.
   const io::Board board{7, 5, 0.04};
   constexpr double kFocal = 600;
-  std::vector<io::BoardSighting> sightings;
+  std::vector<io::BoardDetection> sightings;
   for (int place = 0; place < 8; ++place) {
     const double turn = 0.5 * std::sin(place * 2.0);
     const double tilt = 0.5 * std::cos(place * 3.0);
-    io::BoardSighting sighting;
+    io::BoardDetection sighting;
     for (int row = 0; row < board.rows; ++row) {
       for (int column = 0; column < board.columns; ++column) {
         const double u = board.square_m * (column - 3);

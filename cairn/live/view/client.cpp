@@ -217,8 +217,8 @@ bool Client::is_mid_frame() const {
   });
 }
 
-std::optional<Outgoing> Client::next() {
-  Outgoing out;
+std::optional<OutgoingMessage> Client::next() {
+  OutgoingMessage out;
   if (!texts_.empty()) {
     out.text = std::move(texts_.front());
     texts_.pop_front();

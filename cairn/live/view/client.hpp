@@ -27,7 +27,7 @@ inline constexpr std::array<std::string_view, 3> kSubprotocols{"foxglove.sdk.v1"
 std::string_view chosen_subprotocol(std::string_view offered);
 
 /// The next data to send: a text, or a message with a prefix before its payload.
-struct Outgoing {
+struct OutgoingMessage {
   std::string text;
   ViewMessagePtr message;
   std::array<std::uint8_t, 13> head{};
@@ -52,7 +52,7 @@ class Client {
   void changed(const std::set<std::string>& names);
 
   /// The next data to send; nullopt if nothing waits.
-  std::optional<Outgoing> next();
+  std::optional<OutgoingMessage> next();
   /// False if the client must first read earlier answers before it sends more requests.
   [[nodiscard]] bool may_ask() const { return texts_.size() < 16; }
 

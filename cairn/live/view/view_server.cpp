@@ -666,7 +666,7 @@ class Socket : public Viewer, public std::enable_shared_from_this<Socket<Hub, St
   websocket::stream<Stream> stream_;
   Client client_;
   beast::flat_buffer buffer_;
-  Outgoing out_;
+  OutgoingMessage out_;
   bool is_writing_ = false;
   bool is_reading_ = false;
   bool is_open_ = false;
