@@ -299,7 +299,7 @@ TEST(Runner, ShowsTheOptionThatTheSearchForBetterOnesSets) {
   const auto set = std::ranges::find_if(
       notebook.frames, [](const LiveFramePtr& frame) { return frame->step.control.has_value(); });
   ASSERT_NE(set, notebook.frames.end());
-  EXPECT_EQ((*set)->step.control->arm.option, "objects.min_area");
+  EXPECT_EQ((*set)->step.control->candidate.option, "objects.min_area");
   EXPECT_EQ((*set)->config->segmentation.objects.min_area, 60);
   ASSERT_NE(set + 1, notebook.frames.end());
   EXPECT_EQ((*(set + 1))->config->segmentation.objects.min_area, Config{}.objects.min_area);
