@@ -200,7 +200,7 @@ TEST_F(Dds, BytesEqualThoseOfCyclone) {
   EXPECT_GE(detections.detections.size(), 2U);
   expect_the_bytes_of_cyclone<vision_msgs_msg_dds__Detection3DArray_>(
       detections, vision_msgs_msg_dds__Detection3DArray__desc);
-  const auto grid = grid_of(header, step.frame, camera, live_frame()->config->segmentation.space);
+  const auto grid = grid_of(header, step.frame, camera, live_frame()->config->segmentation.obstacles);
   ASSERT_TRUE(grid);
   expect_the_bytes_of_cyclone<nav_msgs_msg_dds__OccupancyGrid_>(*grid, nav_msgs_msg_dds__OccupancyGrid__desc);
   const auto floor = floor_transform_of(step.stamp, {}, step.frame.ground, camera);
@@ -281,7 +281,7 @@ TEST_F(Dds, ResultsArePublished) {
   expect_same(come(labels), labels_of(header, frame->step));
   expect_same(come(reject), reject_of(header, found));
   expect_same(come(grid), *grid_of(header_of(frame->step.stamp, "cairn_floor"), found, camera,
-                                   frame->config->segmentation.space));
+                                   frame->config->segmentation.obstacles));
   const auto said = come(stats);
   ASSERT_TRUE(said);
   const auto json = nlohmann::json::parse(said->data);

@@ -58,7 +58,7 @@ Image image(const std::string& encoding, std::uint32_t width, std::uint32_t step
 }
 
 TEST(RosImages, RowsMayBeLongerThanTheImage) {
-  const LoadedImage picture = picture_from(image("mono8", 2, 3, {1, 2, 0, 3, 4, 0}));
+  const Picture picture = picture_from(image("mono8", 2, 3, {1, 2, 0, 3, 4, 0}));
   EXPECT_EQ(picture.gray.size(), (cairn::Size{2, 2}));
   EXPECT_EQ(picture.gray(1, 1), 4);
   EXPECT_TRUE(picture.rgb.empty());
@@ -66,7 +66,7 @@ TEST(RosImages, RowsMayBeLongerThanTheImage) {
 
 TEST(RosImages, ChannelsAreInTheDeclaredOrder) {
   EXPECT_EQ(picture_from(image("rgb8", 1, 3, {10, 20, 30})).rgb(0, 0), (cairn::Rgb{10, 20, 30}));
-  const LoadedImage picture = picture_from(image("bgr8", 1, 3, {10, 20, 30}));
+  const Picture picture = picture_from(image("bgr8", 1, 3, {10, 20, 30}));
   EXPECT_EQ(picture.rgb(0, 0), (cairn::Rgb{30, 20, 10}));
   EXPECT_EQ(picture.gray(0, 0), (77 * 30 + 150 * 20 + 29 * 10 + 128) >> 8);
 }
