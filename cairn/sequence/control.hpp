@@ -52,7 +52,7 @@ std::vector<OptionCandidate> option_candidates(const Config& config, Size image,
 std::vector<OptionCandidate> differences(const Config& config, const Config& known);
 
 /// Of these, the ones that may be set without asking the user, as restoring candidates. Omits knowledge of robot and
-/// scene: `space`, the origin of the floor, except off, and a disparity range that starts elsewhere or is
+/// scene: `obstacles`, the origin of the floor, except off, and a disparity range that starts elsewhere or is
 /// larger. A smaller range may be known as well, so the larger one does not count as restoring.
 std::vector<OptionCandidate> restoring_candidates(const Config& config, const Config& known, Size image);
 

@@ -20,8 +20,7 @@ published = json.loads((source / "docs/schema/objects.schema.json").read_text())
 
 
 def strict(schema):
-    """The schema without unknown keys and with all keys added after 2.0 required: it is open for readers, not for the
-    writer."""
+    """The schema without unknown keys and with all keys required: it is open for readers, not for the writer."""
     if isinstance(schema, list):
         return [strict(part) for part in schema]
     if not isinstance(schema, dict):
@@ -62,9 +61,6 @@ def documents():
         yield "no calibration", written(lonely)
         yield "no ground", written(lonely, "--set", "ground.source=off")
 
-
-# Documents of version 1.0 have none of these.
-LATER = {"stamp_ns", "floor_frame", "left_out", "obstacle_scan", "disparity_sigma_px", "depth_interval_m", "box_on_floor"}
 
 failures = 0
 
@@ -107,15 +103,14 @@ def at(document, path):
 
 def broken_documents():
     for path in every_key(full):
-        if path[-1] not in LATER:
-            without = copy.deepcopy(full)
-            del at(without, path[:-1])[path[-1]]
-            yield f"without {path}", without
+        without = copy.deepcopy(full)
+        del at(without, path[:-1])[path[-1]]
+        yield f"without {path}", without
         other = copy.deepcopy(full)
         at(other, path[:-1])[path[-1]] = [[True]]
         yield f"another type of {path}", other
     for path, value in [
-            (("schema",), "2.0"), (("image", "width"), 0), (("rig", "baseline_m"), -0.1), (("objects", 0, "id"), 0),
+            (("schema",), "1.0"), (("image", "width"), 0), (("rig", "baseline_m"), -0.1), (("objects", 0, "id"), 0),
             (("objects", 0, "confidence"), 1.5), (("objects", 0, "bbox"), [1, 2, 3]), (("objects", 0, "bbox"), [1, 2, 3, 4, 5]),
             (("objects", 0, "segmentation", "counts"), "a b"), (("objects", 0, "mean_colour"), [0, 0, 256]),
             (("ground", "refusal"), "no plane"), (("ground", "plane"), None), (("timings_ms", "match"), -1)]:
@@ -128,13 +123,6 @@ count = 0
 for name, document in broken_documents():
     count += 1
     expect(not open_form.is_valid(document), f"passed, though broken: {name}")
-first = copy.deepcopy(full)
-first["schema"] = "2.0"
-for node in (first, *first["objects"]):
-    for key in LATER & node.keys():
-        del node[key]
-expect(open_form.is_valid(first), "a document of 2.0 is refused")
-expect(not closed_form.is_valid(first), "what came later than 2.0 may be left out unseen")
 later = copy.deepcopy(full)
 later["schema"], later["objects"][0]["later"] = "2.7", 1
 expect(open_form.is_valid(later), "a later 2.x with one more key is refused")

@@ -102,7 +102,7 @@ def run_python(blocks, folder, environment):
 def check_declarations(block, compiler, source):
     """The compiler reports a repeated declaration as redundant; one that differs is not reported."""
     code = "#include <cairn/cairn.hpp>\n" + "".join(
-        f"#include <{name}>\n" for name in re.findall(r"//.*?((?:cairn|io|page|tracking|source|landmarks)/\w+(?:/\w+)*\.hpp)", block.text))
+        f"#include <{name}>\n" for name in re.findall(r"//.*?(cairn/\w+(?:/\w+)*\.hpp)", block.text))
     code += f"namespace cairn {{\n{block.text}}}\n"
     run = subprocess.run([compiler, "-std=c++20", "-fsyntax-only", "-Wredundant-decls", f"-I{source}", "-xc++", "-"],
                          input=code, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})

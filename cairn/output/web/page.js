@@ -273,7 +273,7 @@
       (range === null ? [] : [polar(range, scan.angle_min_rad + i * scan.angle_increment_rad)]));
     const boxes = objects.filter((o) => o.box_on_floor).map((o) => ({...o, corners: cornersOf(o.box_on_floor)})).reverse();  // nearest on top
     const places = [...dots, ...boxes.flatMap((o) => o.corners)];
-    const reach = 1.05 * (places.length ? Math.max(...places.map((p) => Math.hypot(...p))) : config?.space?.range ?? 6);
+    const reach = 1.05 * (places.length ? Math.max(...places.map((p) => Math.hypot(...p))) : config?.obstacles?.range ?? 6);
     const [right, left] = sideAngles(facts);
     const beside = Math.max(reach * Math.sin(Math.max(-right, left)), ...places.map(([, y]) => Math.abs(y)));
     const scale = Math.min((high - bottom - 16) / reach, (wide / 2 - 34) / beside);
