@@ -65,9 +65,9 @@ std::string left_out_text(const std::vector<cairn::RejectedObstacle>& left_out) 
                      (left_out.size() == 1 ? " obstacle is not an object:" : " obstacles are not objects:");
   const char* between = " ";
   for (const auto& reason : kLeftOutReasons) {
-    const auto count = std::count_if(left_out.begin(), left_out.end(), [&](const cairn::RejectedObstacle& left) {
-      return left.reason == reason.value;
-    });
+    const auto count =
+        std::count_if(left_out.begin(), left_out.end(),
+                      [&](const cairn::RejectedObstacle& left) { return left.reason == reason.value; });
     if (count == 0) continue;
     text += between + std::to_string(count) + " " + std::string(reason.name);
     between = ", ";
