@@ -12,7 +12,8 @@ namespace cairn {
 namespace {
 
 StereoMatch match_pair(FrameInput& in, const Run& run, StageClock& stage) {
-  const auto& [rig, config, exec] = run;
+  const Config& config = run.config;
+  const Exec& exec = run.exec;
   StereoMatch found;
   auto pair = StereoPair::from(in.left.gray, in.right, in.left.rgb);
   if (config.epipolar_correction.max_rows >= 0) {
