@@ -54,6 +54,12 @@ void set_from_text(Config& config, const std::string& assignment, const Elsewher
 
 }  // namespace
 
+bool sets_search_range(const ConfigOptions& options) {
+  return std::ranges::any_of(options.sets, [](const std::string& assignment) {
+    return name_in(assignment) == "match.num_disparities";
+  });
+}
+
 ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities,
                        const Elsewhere& elsewhere) {
   ResolvedConfig resolved;
@@ -114,6 +120,8 @@ void add_input_options(CLI::App& app, InputOptions& options) {
                  "calibration; default: calib.txt next to the left image, else ../gt/calib.txt, else "
                  "none: no metres")
       ->type_name("FILE");
+  app.add_flag("--scale-calibration", options.scale_calibration,
+               "scale a calibration for images of another size of the same shape");
   add_config_options(app, options.config);
 }
 
@@ -271,11 +279,19 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
   io::Calibration calibration;
   if (calib) {
     calibration = io::load_calibration(*calib, files.grey_cameras);
-    io::check_size(calibration, frame.left.gray.size(), *calib);
+    calibration = io::suited(calibration, frame.left.gray.size(), *calib, options.scale_calibration);
+    if (sets_search_range(options.config)) calibration.num_disparities.reset();
     io::check_search_range(calibration, *calib);
   }
   frame.rig = calibration.rig;
-  if (calibration.of_raw_cameras) frame.raw_calibration = calib;
+  for (const std::string& remark : calibration.remarks)
+    frame.calibration_remarks += "cairn: " + calib->string() + ": " + remark + "\n";
+  if (calibration.of_raw_cameras) {
+    frame.calibration_remarks +=
+        "cairn: " + calib->string() +
+        ": describes raw cameras and their distortion; images are not rectified here and must be "
+        "(cairn rectify does, and writes their calib.txt)\n";
+  }
   ResolvedConfig resolved = resolve(options.config, calibration.num_disparities);
   frame.config = std::move(resolved.config);
   frame.config.ground.known = std::move(calibration.ground);
@@ -290,13 +306,6 @@ Frame segment_frame(LoadedFrame& loaded, const Exec& exec) {
   }
   return segment(StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config,
                  exec);
-}
-
-std::string remark_on_calibration(const LoadedFrame& loaded) {
-  if (!loaded.raw_calibration) return {};
-  return "cairn: " + loaded.raw_calibration->string() +
-         ": describes raw cameras and their distortion; images are not rectified here and must be "
-         "(cairn rectify does, and writes their calib.txt)\n";
 }
 
 Stopwatch::Stopwatch(Exec& exec) : exec_(exec) {

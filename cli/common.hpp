@@ -36,6 +36,9 @@ struct ResolvedConfig {
 ResolvedConfig resolve(const ConfigOptions& options, std::optional<int> calibrated_disparities = std::nullopt,
                        const std::function<bool(std::string_view, std::string_view)>& elsewhere = {});
 
+/// Whether --set has match.num_disparities; ndisp of a calibration is not read then.
+bool sets_search_range(const ConfigOptions& options);
+
 /// The options of a sequence only, after applying the config options. Throws Error if sequences are not built
 /// in.
 std::vector<OptionInfo> sequence_options(const ConfigOptions& config);
@@ -54,6 +57,7 @@ struct InputOptions {
   std::string left;   // or a folder
   std::string right;  // empty with a folder, or with a given disparity
   std::string calib;
+  bool scale_calibration = false;
   std::string disparity;
   ConfigOptions config;
   io::Cameras cameras = io::Cameras::rectified;  // the kind of images searched for
@@ -81,15 +85,12 @@ struct LoadedFrame {
   std::optional<StereoRig> rig;
   Config config;
   std::string preset;
-  std::optional<std::filesystem::path> raw_calibration;  // the file, if it describes raw cameras
+  std::string calibration_remarks;  // lines for the user
 };
 /// Reads and checks everything before processing. Throws Error.
 LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec);
 /// Moves the given disparity out of `loaded`, if there is one.
 Frame segment_frame(LoadedFrame& loaded, const Exec& exec);
-
-/// A line for stderr if the calibration is valid only for images rectified with it; else "".
-std::string remark_on_calibration(const LoadedFrame& loaded);
 
 /// Collects the time of every stage during its lifetime.
 class Stopwatch {

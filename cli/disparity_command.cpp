@@ -83,7 +83,7 @@ int estimate(const DisparityOptions& options) {
   (void)resolve(options.input.config);
   Exec exec = make_exec(options.exec);
   const LoadedFrame loaded = load_frame(frames.front(), options.input, exec);
-  std::cerr << remark_on_calibration(loaded);
+  std::cerr << loaded.calibration_remarks;
   if (!options.output.empty()) check_output(options.output, loaded.config.match);
   if (!options.confidence.empty()) check_png(options.confidence, "the confidence");
   if (!options.view.empty()) check_png(options.view, "the view");

@@ -64,10 +64,10 @@ std::optional<io::LoadedPair> load_or_find(const io::FrameFiles& files, Examined
 }
 
 /// The calibration; nullopt and a finding if it is impossible or belongs to other images.
-io::Calibration calibration_or_find(const io::FrameFiles& files, const std::string& given,
+io::Calibration calibration_or_find(const io::FrameFiles& files, const InputOptions& options,
                                     ExaminedPair& examined) {
   std::optional<fs::path> path = files.calib;
-  if (!given.empty()) path = given;
+  if (!options.calib.empty()) path = options.calib;
   if (!path) return {};
   io::Calibration calibration;
   try {
@@ -77,6 +77,9 @@ io::Calibration calibration_or_find(const io::FrameFiles& files, const std::stri
         {FindingKind::impossible_calibration, Severity::broken, error.value(), error.what()});
     return {};
   }
+  if (sets_search_range(options.config)) calibration.num_disparities.reset();
+  io::check_search_range(calibration, *path);
+  if (options.scale_calibration && examined.size) return io::suited(calibration, *examined.size, *path, true);
   if (calibration.image_size && examined.size && *calibration.image_size != *examined.size) {
     examined.findings.push_back({FindingKind::calibration, Severity::broken,
                                  static_cast<double>(calibration.image_size->width),
@@ -112,7 +115,7 @@ void examine_rectification(ExaminedPair& examined) {
 ExaminedPair examine(const io::FrameFiles& files, const DoctorOptions& options, const Exec& exec) {
   ExaminedPair examined{files.name, {}, {}, {}, {}};
   const std::optional<io::LoadedPair> images = load_or_find(files, examined, exec);
-  const io::Calibration calibration = calibration_or_find(files, options.input.calib, examined);
+  const io::Calibration calibration = calibration_or_find(files, options.input, examined);
   if (!images) return examined;
   const Config config = resolve(options.input.config, calibration.num_disparities).config;
   examined.measures = measure_pair(StereoPair::from(images->left.gray, images->right.gray), exec);

@@ -104,7 +104,7 @@ int follow(const RunOptions& options) {
   check(options.files, options.source.source);
   check(options.view);
   const Exec exec = make_exec(options.exec);
-  const auto source = open_source(options.source, exec.pool);
+  const auto source = open_source(options.source, exec.pool, options.config);
   const FollowConfig config = resolve_follow(options.config, source->disparities(), source->ground());
   const RunSinks* opened = nullptr;
   live::LiveOptions how = live::LiveOptions::unpaced();

@@ -93,7 +93,7 @@ int live_command(LiveCommandOptions options) {
   const RecordedConfig recorded(run.source.source, run.config, options.has_config_option);
   check(run.view);
   const Exec exec = make_exec(run.exec);
-  const auto open = [&] { return open_source(run.source, exec.pool); };
+  const auto open = [&] { return open_source(run.source, exec.pool, run.config); };
   const std::unique_ptr<input::Sequence> source = options.loop ? live::looped(open) : open();
   if (options.has_pace && source->status().is_live)
     throw Error("--pace: is for files, " + source->name() + " is a camera, which sets its own");

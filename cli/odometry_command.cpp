@@ -161,7 +161,7 @@ output::TrajectoryForm form_named(const std::string& name) {
 int estimate(const OdometryOptions& options) {
   const output::TrajectoryForm form = form_named(options.form);
   const Exec exec = make_exec(options.exec);
-  const std::unique_ptr<input::Sequence> source = open_source(options.input, exec.pool);
+  const std::unique_ptr<input::Sequence> source = open_source(options.input, exec.pool, options.config);
   const EndsBySignal ends(*source);
   const FollowConfig config = resolve_odometry(options, *source);
   if (!source->rig()) {

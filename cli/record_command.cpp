@@ -75,7 +75,7 @@ class Recording {
 
 int record(const RecordOptions& options) {
   check_empty(options.output);
-  const std::unique_ptr<input::Sequence> sequence = open_source(options.input, Pool::make());
+  const std::unique_ptr<input::Sequence> sequence = open_source(options.input, Pool::make(), {});
   const EndsBySignal ends(*sequence);
   const Progress progress(sequence->size().value_or(2));
   Recording recording(options.output, *sequence);

@@ -46,7 +46,8 @@ void save_stamps(const fs::path& path, const std::vector<std::optional<std::int6
 
 int rectify(const RectifyOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
-  const io::Rectifier rectify_pair(io::load_raw_calibration(options.input.calib));
+  const io::Rectifier rectify_pair(io::load_raw_calibration(
+      options.input.calib, [&] { return io::load_picture(frames.front().left).gray.size(); }));
   const auto folder_of = [&](const io::FrameFiles& files) {
     return frames.size() == 1 ? fs::path(options.output) : options.output / fs::path(files.name);
   };

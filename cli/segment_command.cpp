@@ -193,7 +193,7 @@ struct FrameTask {
 Report work_on(LoadedFrame loaded, const FrameTask& task, const SegmentOptions& options, Exec& exec) {
   const auto& [files, stamp_ns, folder, one_of_many, may_measure] = task;
   Report report;
-  report.remark = remark_on_calibration(loaded);
+  report.remark = loaded.calibration_remarks;
   const Stopwatch watch(exec);
   const Frame frame = segment_frame(loaded, exec);
   report.totals = {1, frame.objects.list.size(), valid_share(frame.disparity), frame.ground.plane ? 1 : 0,

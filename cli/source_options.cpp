@@ -48,6 +48,8 @@ void add_source_options(CLI::App& app, SourceInput& input) {
       ->type_name("FILE");
   app.add_flag("--rectify", input.options.rectify,
                "rectification of raw images by the --calib of the raw cameras (EuRoC: always)");
+  app.add_flag("--scale-calibration", input.options.scale_calibration,
+               "scaling of a calibration for images of another size of the same shape");
   app.add_option("--layout", input.options.layout,
                  "layout of a single video or camera: side_by_side or top_bottom")
       ->type_name("NAME");
@@ -74,10 +76,12 @@ void add_source_options(CLI::App& app, SourceInput& input) {
       ->capture_default_str();
 }
 
-std::unique_ptr<input::Sequence> open_source(const SourceInput& input, const Pool& pool) {
+std::unique_ptr<input::Sequence> open_source(const SourceInput& input, const Pool& pool,
+                                             const ConfigOptions& config) {
   // Silences FFmpeg, which prints to stderr; "-8" is its quiet level.
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   input::SourceOptions options = input.options;
+  options.has_search_range = sets_search_range(config);
   if (!input.frames.empty()) options.frames = input::parse_frame_range(input.frames);
   return input::open_sequence(input.source, options, pool);
 }

@@ -16,7 +16,8 @@ struct SourceInput {
 };
 void add_source_options(CLI::App& app, SourceInput& input);
 /// Throws Error.
-std::unique_ptr<input::Sequence> open_source(const SourceInput& input, const Pool& pool);
+std::unique_ptr<input::Sequence> open_source(const SourceInput& input, const Pool& pool,
+                                             const ConfigOptions& config);
 
 /// Makes Ctrl-C end a camera source like the end of a file, during its lifetime, since cameras do not end by
 /// themselves. No effect on files. One at a time.

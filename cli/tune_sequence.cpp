@@ -168,7 +168,7 @@ int tune_sequence(const TuneSequenceOptions& options, const std::function<bool()
   input.source = options.source;
   input.options.calib = options.calib;
   const Exec exec = make_exec(options.exec);
-  const auto source = open_source(input, exec.pool);
+  const auto source = open_source(input, exec.pool, options.config);
   FollowConfig start;
   const ResolvedConfig base = resolve(options.config);  // without options from the calibration
   start.segmentation = resolve(options.config, source->disparities()).config;

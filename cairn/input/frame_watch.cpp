@@ -40,23 +40,29 @@ void SourceCalibration::suit(Size image) {
   if (rectifier) {
     says.num_disparities = io::disparities_down_to(0, *says.rig, image.width);
   } else if (!path.empty()) {
-    io::check_size(says, image, path);
+    says = io::suited(says, image, path, scales);
+    if (has_search_range) says.num_disparities.reset();
     io::check_search_range(says, path);
   }
 }
 
-std::optional<SourceRemark> SourceCalibration::remark_on_raw(const std::string& first) const {
-  if (rectifier || path.empty() || !says.of_raw_cameras) return std::nullopt;
-  return SourceRemark{
-      path.string() +
-          ": describes raw cameras and their distortion; the images are assumed to be rectified "
-          "(if raw: --rectify)",
-      0, first, false, false};
+std::vector<SourceRemark> SourceCalibration::remarks(const std::string& first) const {
+  std::vector<SourceRemark> remarks;
+  const auto add = [&](const std::string& what) {
+    remarks.push_back({path.string() + ": " + what, 0, first, false, false});
+  };
+  for (const std::string& remark : says.remarks) add(remark);
+  if (!rectifier && !path.empty() && says.of_raw_cameras) {
+    add("describes raw cameras and their distortion; the images are assumed to be rectified (if raw: --rectify)");
+  }
+  return remarks;
 }
 
 SourceCalibration open_calibration(const SourceOptions& options, const std::optional<fs::path>& found,
-                                   bool grey_cameras, bool is_raw) {
+                                   bool grey_cameras, bool is_raw, const std::function<Size()>& image_size) {
   SourceCalibration calibration;
+  calibration.scales = options.scale_calibration;
+  calibration.has_search_range = options.has_search_range;
   if (!options.calib.empty()) {
     calibration.path = options.calib;
   } else if (found) {
@@ -65,7 +71,8 @@ SourceCalibration open_calibration(const SourceOptions& options, const std::opti
   if (is_raw || options.rectify) {
     if (calibration.path.empty())
       throw Error("--rectify: found no calibration, expected that of the raw cameras as --calib FILE");
-    calibration.rectifier = std::make_shared<io::Rectifier>(io::load_raw_calibration(calibration.path));
+    calibration.rectifier =
+        std::make_shared<io::Rectifier>(io::load_raw_calibration(calibration.path, image_size));
     calibration.says.rig = calibration.rectifier->rig();
   } else if (!calibration.path.empty()) {
     calibration.says = io::load_calibration(calibration.path, grey_cameras);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,23 +24,25 @@ struct SourceCalibration {
   std::filesystem::path path;  // empty if there is none
   io::Calibration says;
   std::shared_ptr<const io::Rectifier> rectifier;  // for raw images
+  bool scales = false;                             // to the size of the images
+  bool has_search_range = false;                   // without the file
 
   /// The rectified pair for raw images, else the pair itself. Throws Error if the calibration was made for
   /// another size.
   [[nodiscard]] io::LoadedPair rectified(io::LoadedPair pair, const Pool& pool) const;
 
-  /// Checks the calibration once the image size is known: sets the search range for raw images; else throws
+  /// Checks or scales the calibration once the image size is known: sets the search range for raw images; else throws
   /// Error if the file was made for another size, or its range exceeds the image width.
   void suit(Size image);
-  /// A remark if the file describes raw cameras but the images are assumed to be rectified. `first`: name of
-  /// the first frame.
-  [[nodiscard]] std::optional<SourceRemark> remark_on_raw(const std::string& first) const;
+  /// Those of the file, and one if it describes raw cameras but the images are assumed to be rectified. `first`: name
+  /// of the first frame.
+  [[nodiscard]] std::vector<SourceRemark> remarks(const std::string& first) const;
 };
-/// `found`: next to the images; options.calib takes precedence. Throws Error, also for raw images without a
-/// calibration.
+/// `found`: next to the images; options.calib takes precedence. `image_size`: of the images, called if the
+/// calibration of raw cameras has none. Throws Error, also for raw images without a calibration.
 SourceCalibration open_calibration(const SourceOptions& options,
                                    const std::optional<std::filesystem::path>& found, bool grey_cameras,
-                                   bool is_raw);
+                                   bool is_raw, const std::function<Size()>& image_size = {});
 
 /// Checks every frame of a source, in order.
 class FrameWatch {

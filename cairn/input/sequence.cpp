@@ -51,11 +51,12 @@ class FileSequence : public SourceSequence {
     const ListedFrame& first = list_.frames.front();
     const std::optional<fs::path> found = first.calib ? first.calib : list_.calib;
     each_has_own_ = options.calib.empty() && first.calib && !list_.is_raw && !options.rectify;
-    calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw);
+    calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw,
+                                    [&] { return io::load_picture(first.left).gray.size(); });
     if (each_has_own_) calib_bytes_ = io::read_file(calibration_.path, io::kMaxTextBytes);
     first_ = load(first);
     calibration_.suit(first_->left.gray.size());
-    if (auto raw = calibration_.remark_on_raw(first.name)) remarks_.push_back(std::move(*raw));
+    std::ranges::move(calibration_.remarks(first.name), std::back_inserter(remarks_));
   }
 
   [[nodiscard]] std::optional<std::size_t> size() const override { return list_.frames.size(); }

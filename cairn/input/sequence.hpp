@@ -73,11 +73,13 @@ struct SourceOptions {
   double rate_hz = 0;  // replaces missing stamps and those of a video; 0 = from the source, else 10
   FrameRange frames;
   double max_gap_s = 1.0;
-  double max_skew_ms = 5;      // between the stamps of left and right, if each side has its own
-  std::string topics;          // of a recording, "LEFT,RIGHT"; empty: found by type and name
-  bool rectify = false;        // the images are raw and are rectified by the calibration; always for
-                               // EuRoC
-  double open_timeout_s = 10;  // for cameras: until the first pair
+  double max_skew_ms = 5;          // between the stamps of left and right, if each side has its own
+  std::string topics;              // of a recording, "LEFT,RIGHT"; empty: found by type and name
+  bool rectify = false;            // the images are raw and are rectified by the calibration; always for
+                                   // EuRoC
+  bool scale_calibration = false;  // where it is for images of another size of the same shape
+  bool has_search_range = false;   // match.num_disparities is set: ndisp of the calibration is not read
+  double open_timeout_s = 10;      // for cameras: until the first pair
 };
 
 /// A remark on frames of a source, with their number. No frame is skipped without such a remark.

@@ -22,7 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A rectified calibration has fx = fy; smaller relative differences are rounding.
-constexpr double kSameFocal = 1e-3;
+constexpr double kRounding = 1e-3;
+/// Published calibrations of rectified images have fx and fy up to a few tenths of a percent apart. Only heights
+/// suffer: distances use fx.
+constexpr double kSameFocal = 1e-2;
 
 void check_same_focal(double a, const char* name_a, double b, const char* name_b) {
   if (std::abs(a - b) <= kSameFocal * std::abs(a)) return;
@@ -118,8 +121,11 @@ bool is_camera_zero(std::string_view line) {
   return line.starts_with("cam0") && trimmed(line.substr(4)).starts_with('=');
 }
 
+/// key=value, not a YAML line with a comment or text that contains '='.
 bool is_assignment(std::string_view line) {
-  return !line.starts_with('#') && line.find('=') != std::string_view::npos;
+  line = trimmed(line.substr(0, line.find('#')));
+  const std::string_view key = trimmed(line.substr(0, line.find('=')));
+  return key.size() < line.size() && !key.empty() && key.find_first_of(" \t:{[\"'") == std::string_view::npos;
 }
 
 Statement read_statement(std::string_view text, const fs::path& path, bool grey_cameras) {
@@ -127,9 +133,11 @@ Statement read_statement(std::string_view text, const fs::path& path, bool grey_
   if (trimmed(text).empty()) throw Error("is empty, expected a calibration");
   if (text.find('\0') != std::string_view::npos) throw Error("is not text, expected a calibration");
   if (trimmed(text).starts_with('<')) return read_opencv_xml(text);
+  if (const auto program = known_but_unread(text)) throw Error(*program);
   if (has_line(text, is_camera_zero)) return read_middlebury(text);
   if (has_kitti_projection(text)) return read_kitti(text, grey_cameras);
   if (has_line(text, is_assignment)) return read_key_value_lines(text);
+  if (std::optional<Statement> says = read_camera_matrix_and_baseline(text)) return *says;
   if (std::optional<Statement> says = read_yaml(text, path)) return *says;
   throw Error("is not a calibration in a known form (docs/formats.md lists them); it begins with " +
               excerpt(lines_of(trimmed(text)).front()));
@@ -175,7 +183,36 @@ KnownGround mounting(const Statement& says) {
   return known;
 }
 
+std::string listed(const std::vector<std::string>& keys) {
+  std::string text;
+  for (const std::string& key : keys) text += (text.empty() ? "" : ", ") + excerpt(key);
+  return text;
+}
+
+std::vector<std::string> remarks_on(const Statement& says) {
+  std::vector<std::string> remarks;
+  if (!says.unknown_keys.empty())
+    remarks.push_back("ignores the unknown " + std::string(says.unknown_keys.size() == 1 ? "key " : "keys ") +
+                      listed(says.unknown_keys));
+  if (says.fx && says.fy && std::abs(*says.fx - *says.fy) > kRounding * *says.fx) {
+    std::array<char, 32> percent{};
+    std::snprintf(percent.data(), percent.size(), "%.2f %%", 100 * std::abs(*says.fy / *says.fx - 1));
+    remarks.push_back("fx is " + written(*says.fx) + ", fy is " + written(*says.fy) +
+                      ": heights are off by " + percent.data() + ", distances and widths are not");
+  }
+  return remarks;
+}
+
+/// Without metres because of keys of another program, such as f and bf.
+void refuse_keys_instead_of_metres(const Statement& says) {
+  if (says.unknown_keys.empty() || ((says.fx || says.fy) && says.baseline_m)) return;
+  throw Error(std::string("has no ") + (says.fx || says.fy ? "baseline" : "fx") + ", but the unknown " +
+              (says.unknown_keys.size() == 1 ? "key " : "keys ") + listed(says.unknown_keys) +
+              ", expected fx fy cx cy (px) and baseline (m)");
+}
+
 Calibration judged(const Statement& says) {
+  refuse_keys_instead_of_metres(says);
   check_positive(says.fx, "the focal length (fx)");
   check_positive(says.fy, "the focal length (fy)");
   check_positive(says.baseline_m, "the baseline in metres");
@@ -193,6 +230,7 @@ Calibration judged(const Statement& says) {
   }
   if (says.ndisp) calibration.num_disparities = counted(*says.ndisp, "ndisp", kMaxPixelsPerSide);
   calibration.of_raw_cameras = says.has_distortion;
+  calibration.remarks = remarks_on(says);
   calibration.ground = mounting(says);
   return calibration;
 }
@@ -290,19 +328,32 @@ StereoRig rig_of(const Projection& left, const Projection& right) {
   return *calibration.rig;
 }
 
-/// Unknown keys are ignored, but without a baseline there are no metres.
-void refuse_misspelt_baseline(const Pairs& pairs) {
-  constexpr const char* kKey = "baseline";
-  if (pairs.contains(kKey)) return;
+/// Unknown keys are ignored, but without a baseline there are no metres. `unit`: of the form's baseline.
+void refuse_misspelt_baseline(const Pairs& pairs, const char* unit) {
+  const std::string right_key = "baseline";
+  if (pairs.contains(right_key)) return;
   for (const auto& [key, value] : pairs) {
-    if (!nearest(key, {kKey}).empty())
-      throw Error("has no key 'baseline', but " + excerpt(key) + ", did you mean 'baseline'?");
+    if (key.starts_with(right_key) || !nearest(key, {right_key}).empty())
+      throw Error("has no key 'baseline', but " + excerpt(key) + ", expected 'baseline' in " + unit);
   }
+}
+
+/// The keys that are not among `known`, nor of the mounting.
+template <std::size_t N>
+std::vector<std::string> unknown_among(const Pairs& pairs, const std::array<const char*, N>& known) {
+  std::vector<std::string> unknown;
+  for (const auto& [key, value] : pairs) {
+    const bool is_mounting = key == kGroundPointsKey ||
+                             std::any_of(kMountingKeys.begin(), kMountingKeys.end(),
+                                         [&](const MountingKey& mounting) { return key == mounting.key; });
+    if (!is_mounting && std::find(known.begin(), known.end(), key) == known.end()) unknown.push_back(key);
+  }
+  return unknown;
 }
 
 Statement read_key_value_lines(std::string_view text) {
   const Pairs pairs = pairs_of(text, '=');
-  refuse_misspelt_baseline(pairs);
+  refuse_misspelt_baseline(pairs, "metres");
   Statement says;
   says.fx = number_in(pairs, "fx");
   says.fy = number_in(pairs, "fy");
@@ -312,10 +363,9 @@ Statement read_key_value_lines(std::string_view text) {
   says.doffs = number_in(pairs, "doffs");
   read_size(pairs, says);
   read_mounting(pairs, says);
-  constexpr std::array kKeys = {"fx",           "fy",    "cx",     "cy",    "baseline",
-                                "doffs",        "width", "height", "ndisp", "ground_points",
-                                "camera_height"};
-  if (std::none_of(kKeys.begin(), kKeys.end(), [&](const char* key) { return pairs.contains(key); })) {
+  constexpr std::array kKeys = {"fx", "fy", "cx", "cy", "baseline", "doffs", "width", "height", "ndisp"};
+  says.unknown_keys = unknown_among(pairs, kKeys);
+  if (says.unknown_keys.size() == pairs.size()) {
     throw Error("has none of the keys fx fy cx cy baseline doffs width height ndisp, expected a calibration");
   }
   return says;
@@ -323,7 +373,7 @@ Statement read_key_value_lines(std::string_view text) {
 
 Statement read_middlebury(std::string_view text) {
   const Pairs pairs = pairs_of(text, '=');
-  refuse_misspelt_baseline(pairs);
+  refuse_misspelt_baseline(pairs, "millimetres");
   const std::array<double, 9> left = camera_matrix(pairs, "cam0");
   Statement says;
   says.fx = left[0];
@@ -341,6 +391,54 @@ Statement read_middlebury(std::string_view text) {
   read_size(pairs, says);
   read_mounting(pairs, says);
   return says;
+}
+
+std::optional<Statement> read_camera_matrix_and_baseline(std::string_view text) {
+  std::vector<double> numbers;
+  try {
+    numbers = finite_numbers(text, "K");
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  if (numbers.size() != 10 || numbers[6] != 0 || numbers[7] != 0 || numbers[8] != 1) return std::nullopt;
+  Statement says;
+  says.fx = numbers[0];
+  says.cx = numbers[2];
+  says.fy = numbers[4];
+  says.cy = numbers[5];
+  says.baseline_m = numbers[9];
+  return says;
+}
+
+std::optional<std::string> known_but_unread(std::string_view text) {
+  struct Known {
+    std::array<std::string_view, 2> marks;  // each occurs in the text
+    const char* program;
+    const char* conversion;
+  };
+  static constexpr std::array kKnown = {
+      Known{{"Camera.fx", "Camera."},
+            "ORB-SLAM",
+            "fx=Camera.fx, cy=Camera.cy …, baseline=Camera.bf / Camera.fx"},
+      Known{{"Camera1.fx", "Camera1."}, "ORB-SLAM3", "P1 and P2, or those of its Stereo.T_c1_c2"},
+      Known{{"model_type:", "projection_parameters:"},
+            "VINS",
+            "M1 D1 M2 D2 and R T of body_T_cam0, body_T_cam1"},
+      Known{{"\"value0\"", "\"T_imu_cam\""}, "Basalt", "M1 M2 of its intrinsics and R T of its T_imu_cam"},
+      Known{{"[LEFT_CAM_", "[STEREO]"}, "the ZED", "M1 D1 M2 D2 and R T of one resolution, T in metres"},
+      Known{{"\"cameraData\"", "\"extrinsics\""},
+            "DepthAI",
+            "M1 D1 M2 D2 and R T of its two sockets, T in metres"},
+      Known{
+          {"P_rect_101", "P_rect_103"}, "DrivingStereo", "P2: P_rect_101, P3: P_rect_103, in KITTI's form"}};
+  for (const Known& known : kKnown) {
+    if (text.find(known.marks[0]) == std::string_view::npos ||
+        text.find(known.marks[1]) == std::string_view::npos)
+      continue;
+    return std::string("is a calibration of ") + known.program + ", which is not read; write " +
+           known.conversion + " (docs/formats.md, \"Calibrations\")";
+  }
+  return std::nullopt;
 }
 
 Statement read_kitti(std::string_view text, bool grey_cameras) {
@@ -460,10 +558,46 @@ int disparities_down_to(double nearest_m, const StereoRig& rig, int width) {
   return std::min(static_cast<int>(std::min(steps * kStep, double{kMax})), width);
 }
 
-void check_size(const Calibration& calibration, Size image, const fs::path& path) {
-  if (!calibration.image_size || *calibration.image_size == image) return;
-  throw Error(path.string() + ": the calibration is for " + text(*calibration.image_size) +
-              ", the images are " + text(image));
+Calibration scaled(const Calibration& calibration, Size image) {
+  if (!calibration.image_size) throw Error("has no image size, expected width and height to scale it by");
+  const Size from = *calibration.image_size;
+  const double across = static_cast<double>(image.width) / from.width;
+  const double down = static_cast<double>(image.height) / from.height;
+  if (std::abs(across / down - 1) > kSameFocal) {
+    throw Error("is for " + text(from) + ", which cannot be scaled to " + text(image) +
+                ": the shape differs, so part of the image was cut off");
+  }
+  Calibration result = calibration;
+  result.image_size = image;
+  const auto scale = static_cast<float>(across);
+  if (result.rig) {
+    // Pixel centres are whole numbers: the border of the image, at -0.5, stays where it is.
+    const auto moved = [](float at, double by) { return static_cast<float>((double{at} + 0.5) * by - 0.5); };
+    result.rig->focal_px *= scale;
+    result.rig->cx_px = moved(result.rig->cx_px, across);
+    result.rig->cy_px = moved(result.rig->cy_px, down);
+    result.rig->doffs_px *= scale;
+  }
+  if (result.num_disparities) {
+    result.num_disparities =
+        std::clamp(static_cast<int>(std::ceil(*result.num_disparities * across)), 1, image.width);
+  }
+  for (PointPair& point : result.ground.points) {
+    for (float* at : {&point.x_left, &point.x_right})
+      *at = static_cast<float>((double{*at} + 0.5) * across - 0.5);
+    for (float* at : {&point.y_left, &point.y_right})
+      *at = static_cast<float>((double{*at} + 0.5) * down - 0.5);
+  }
+  return result;
+}
+
+Calibration suited(const Calibration& calibration, Size image, const fs::path& path, bool scales) try {
+  if (!calibration.image_size || *calibration.image_size == image) return calibration;
+  if (scales) return scaled(calibration, image);
+  throw Error("the calibration is for " + text(*calibration.image_size) + ", the images are " + text(image) +
+              " (--scale-calibration if they were only resized)");
+} catch (const Error& error) {
+  throw Error(path.string() + ": " + error.what());
 }
 
 void check_search_range(const Calibration& calibration, const fs::path& path) {
@@ -472,7 +606,8 @@ void check_search_range(const Calibration& calibration, const fs::path& path) {
     Config config;
     set(config, "match.num_disparities", std::to_string(*calibration.num_disparities));
   } catch (const Error& error) {
-    throw Error(path.string() + ": ndisp, the default of " + error.what());
+    throw Error(path.string() + ": ndisp, the default of " + error.what() +
+                "; time and memory grow with it (--set match.num_disparities=N overrides it)");
   }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cairn::io {
 
@@ -19,6 +20,8 @@ struct Calibration {
   KnownGround ground{};                // `ground_points`, `camera_height`, …: for Config::ground.known
   /// The file also describes the lenses of the raw cameras: `rig` is valid for images rectified with it.
   bool of_raw_cameras = false;
+  /// What its user should know, without the file's name: unknown keys that were ignored, fx ≠ fy.
+  std::vector<std::string> remarks{};
 };
 
 /// A calibration that is readable but impossible: a focal length or baseline that is not positive.
@@ -33,12 +36,13 @@ class ImpossibleCalibration : public Error {
 };
 
 /// Reads a calibration, its form recognised by content (docs/formats.md shows each): our own YAML, Middlebury
-/// calib.txt, KITTI calib_cam_to_cam.txt and calib.txt, OpenCV FileStorage YAML/XML/JSON with P1 and P2 or Q,
-/// ROS camera_info YAML (either file of the pair, one file with both, or their folder), key=value lines. Each
-/// may also contain the mounting of the rig: ground_points, camera_height, camera_pitch, camera_roll. Throws
-/// Error (one line: file, what was found, what was expected): missing, unknown form, a number that is invalid
-/// or out of range, fx ≠ fy; ImpossibleCalibration: a focal length or baseline that is not positive. Of the
-/// four KITTI cameras, reads the colour pair unless `grey_cameras`.
+/// calib.txt, KITTI calib_cam_to_cam.txt and calib.txt, OpenCV FileStorage YAML/XML/JSON with P1 and P2 or Q
+/// (matrices also as plain or nested lists), ROS camera_info YAML (either file of the pair, one file with both,
+/// or their folder), K.txt (9 numbers, then the baseline), key=value lines. Each may also contain the mounting
+/// of the rig: ground_points, camera_height, camera_pitch, camera_roll. Throws Error (one line: file, what was
+/// found, what was expected): missing, unknown form, a number that is invalid or out of range, fx and fy more
+/// than 1 % apart, exchanged cameras; ImpossibleCalibration: a focal length or baseline that is not positive.
+/// Of the four KITTI cameras, reads the colour pair unless `grey_cameras`.
 Calibration load_calibration(const std::filesystem::path& path, bool grey_cameras = false);
 /// The same for the content of a file, named `name` in messages.
 Calibration parse_calibration(std::string_view text, const std::filesystem::path& name,
@@ -56,8 +60,14 @@ std::string calibration_text(const StereoRig& rig, Size image, std::optional<int
 /// focal length): a multiple of 16, at most the image width.
 int disparities_down_to(double nearest_m, const StereoRig& rig, int width);
 
-/// Throws Error if the calibration was made for images of another size.
-void check_size(const Calibration& calibration, Size image, const std::filesystem::path& path);
+/// The same calibration for images of another size of the same shape, such as half-size ones. Throws Error
+/// without a size in the file, or if the sides have ratios more than 1 % apart.
+Calibration scaled(const Calibration& calibration, Size image);
+
+/// The calibration for images of this size: scaled() if `scales` and it was made for another one. Throws Error if it
+/// was and not `scales`.
+Calibration suited(const Calibration& calibration, Size image, const std::filesystem::path& path,
+                   bool scales = false);
 /// Throws Error if the height or an angle of the camera is out of range, or the points determine no plane.
 void check_ground(const KnownGround& known);
 /// Throws Error if its number of disparities is out of range for match.num_disparities.

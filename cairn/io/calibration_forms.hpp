@@ -20,7 +20,8 @@ struct Statement {
   std::optional<double> baseline_m;
   std::optional<double> doffs;  // px
   std::optional<double> width, height, ndisp;
-  bool has_distortion = false;          // of the lenses
+  bool has_distortion = false;  // of the lenses
+  std::vector<std::string> unknown_keys{};
   std::vector<double> ground_points{};  // px; x_left, y_left, x_right, y_right of each
   std::optional<double> camera_height{}, camera_pitch{}, camera_roll{};  // m, degrees
 };
@@ -59,6 +60,11 @@ Statement read_middlebury(std::string_view text);
 /// From cameras 2 and 3, the KITTI colour pair, else from 0 and 1; in the opposite order for `grey_cameras`.
 Statement read_kitti(std::string_view text, bool grey_cameras);
 Statement read_opencv_xml(std::string_view text);
+/// K.txt: the 9 numbers of a camera matrix, then the baseline in metres; nullopt for other text.
+std::optional<Statement> read_camera_matrix_and_baseline(std::string_view text);
+/// The program whose calibration this is and which numbers of it to copy, for forms that are recognised but not
+/// read; nullopt for other text.
+std::optional<std::string> known_but_unread(std::string_view text);
 /// Our own YAML, and that of OpenCV and ROS, distinguished by their keys. `path` locates the file of the
 /// other camera of a ROS pair; nullopt if the text is not a YAML map.
 std::optional<Statement> read_yaml(std::string_view text, const std::filesystem::path& path);
@@ -66,7 +72,7 @@ std::optional<Statement> read_yaml(std::string_view text, const std::filesystem:
 /// Both cameras from YAML, XML and JSON of OpenCV, and from a ROS pair.
 RawCalibration read_raw(std::string_view text, const std::filesystem::path& path);
 
-/// left.yaml ↔ right.yaml, *_left ↔ *_right, left_* ↔ right_*; nullopt for other names.
+/// left.yaml ↔ right.yaml, *_left ↔ *_right, left_* ↔ right_*, Left ↔ Right, _L ↔ _R; nullopt for other names.
 std::optional<std::filesystem::path> other_camera(const std::filesystem::path& path);
 
 }  // namespace cairn::io

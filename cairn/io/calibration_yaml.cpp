@@ -7,6 +7,7 @@
 #include <cairn/core/nearest.hpp>
 #include <cairn/io/calibration_forms.hpp>
 #include <cairn/io/read_file.hpp>
+#include <cctype>
 #include <utility>
 
 #include <cairn/io/yaml_text.hpp>
@@ -33,9 +34,24 @@ std::string_view without_directive(std::string_view text) {
   return begin.substr(std::min(begin.find('\n'), begin.size()));
 }
 
+/// OpenCV reads "data:[1, 2]", which YAML takes for a word; a space is missing.
+std::string with_spaces_before_lists(std::string_view text) {
+  std::string spaced;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    spaced += text[i];
+    const bool is_key =
+        i > 0 && (std::isalnum(static_cast<unsigned char>(text[i - 1])) != 0 || text[i - 1] == '_');
+    if (text[i] == ':' && is_key && i + 1 < text.size() && text[i + 1] == '[') spaced += ' ';
+  }
+  return spaced;
+}
+
 std::vector<YAML::Node> documents_of(std::string_view text) {
   try {
-    return yaml_documents(std::string(without_directive(text)));
+    std::vector<YAML::Node> documents = yaml_documents(with_spaces_before_lists(without_directive(text)));
+    // `ros2 topic echo` ends each message with "---".
+    while (documents.size() > 1 && documents.back().IsNull()) documents.pop_back();
+    return documents;
   } catch (const YAML::Exception& exception) {
     const std::string line =
         exception.mark.is_null() ? "" : "line " + std::to_string(exception.mark.line + 1) + ": ";
@@ -50,21 +66,35 @@ std::optional<double> number_at(const YAML::Node& map, const char* key) {
   return finite_number(node.Scalar(), key);
 }
 
+/// A list, or a list of rows.
 std::vector<double> numbers_of(const YAML::Node& sequence, const char* key) {
   // The longest list of any format is 4x4.
-  if (!sequence.IsSequence() || sequence.size() > 16) {
-    throw Error(std::string(key) + " is not a list of at most 16 numbers");
-  }
+  constexpr std::size_t kMaxNumbers = 16;
+  const auto is_list = [](const YAML::Node& node) { return node.IsSequence() && node.size() <= kMaxNumbers; };
+  if (!is_list(sequence)) throw Error(std::string(key) + " is not a list of at most 16 numbers");
   std::vector<double> numbers;
-  for (const YAML::Node& item : sequence) {
+  const auto add = [&](const YAML::Node& item) {
     if (!item.IsScalar()) throw Error(std::string(key) + " contains something that is not a number");
     numbers.push_back(finite_number(item.Scalar(), key));
+  };
+  for (const YAML::Node& item : sequence) {
+    if (!is_list(item)) {
+      add(item);
+    } else {
+      for (const YAML::Node& number : item) add(number);
+    }
   }
   return numbers;
 }
 
+/// OpenCV's map with `data`, or a plain or nested list, whose length tells its shape.
 std::optional<Matrix> matrix_at(const YAML::Node& map, const char* key) {
   const YAML::Node node = map[key];
+  if (node && node.IsSequence()) {
+    std::vector<double> numbers = numbers_of(node, key);
+    const double rows = numbers.size() == 16 ? 4 : numbers.size() == 9 || numbers.size() == 12 ? 3 : 1;
+    return Matrix{rows, static_cast<double>(numbers.size()) / rows, std::move(numbers)};
+  }
   if (!node || !node.IsMap() || !node["data"]) return std::nullopt;
   return Matrix{number_at(node, "rows").value_or(0), number_at(node, "cols").value_or(0),
                 numbers_of(node["data"], key)};
@@ -296,9 +326,41 @@ std::optional<std::pair<YAML::Node, YAML::Node>> ros_pair(const std::vector<YAML
                                                           const fs::path& path) {
   const YAML::Node& map = documents.front();
   if (documents.size() == 2 && ros_projection(map)) return std::pair{map, documents.back()};
-  if (map["left"] && map["right"]) return std::pair{map["left"], map["right"]};
+  for (const auto& [left, right] : {std::pair{"left", "right"}, std::pair{"left_rect", "right_rect"}}) {
+    if (map[left] && map[right]) return std::pair{map[left], map[right]};
+  }
   if (ros_projection(map)) return std::pair{map, ros_partner(path)};
   return std::nullopt;
+}
+
+// ---- the two files of OpenCV's sample stereo_calib ----
+
+/// intrinsics.yml ↔ extrinsics.yml, if it exists.
+std::optional<fs::path> other_half(const fs::path& path) {
+  for (const auto& [word, other] :
+       {std::pair{"intrinsic", "extrinsic"}, std::pair{"extrinsic", "intrinsic"}}) {
+    std::string name = path.filename().string();
+    const std::size_t at = name.rfind(word);
+    if (at == std::string::npos) continue;
+    fs::path half = path.parent_path() / name.replace(at, std::string_view(word).size(), other);
+    std::error_code unknown;
+    if (fs::is_regular_file(half, unknown)) return half;
+  }
+  return std::nullopt;
+}
+
+/// The map, with the keys of the other file that it lacks.
+YAML::Node with_other_half(const YAML::Node& map, const fs::path& path) {
+  if (map["M1"].IsDefined() == map["R"].IsDefined()) return map;
+  const std::optional<fs::path> half = other_half(path);
+  if (!half) return map;
+  const std::vector<YAML::Node> documents = documents_of(read_file(*half, kMaxTextBytes));
+  if (documents.empty() || !documents.front().IsMap()) throw Error(half->string() + " is not a YAML map");
+  YAML::Node both = YAML::Clone(map);
+  for (const auto& entry : documents.front()) {
+    if (entry.first.IsScalar() && !both[entry.first.Scalar()]) both[entry.first.Scalar()] = entry.second;
+  }
+  return both;
 }
 
 // ---- raw cameras ----
@@ -338,7 +400,9 @@ std::array<double, N> needed(const Document& document, Names names) {
   throw Error(std::string("has no ") + *names.begin() + ", expected the calibration of raw cameras");
 }
 
+/// Empty without width and height: that of the images.
 Size raw_size(const Statement& says) {
+  if (!says.width && !says.height) return {};
   constexpr double kMax = 32768;
   const auto counted = [](const std::optional<double>& side, const char* name) {
     if (side && *side >= 1 && *side <= kMax && *side == static_cast<int>(*side))
@@ -367,15 +431,21 @@ RawCalibration read_raw_opencv(const Document& document) {
   return raw;
 }
 
+std::string text_at(const YAML::Node& map, const char* key) {
+  const YAML::Node node = map[key];
+  return node && node.IsScalar() ? node.Scalar() : "";
+}
+
 RawCamera raw_camera(const YAML::Node& camera) {
-  if (const YAML::Node model = camera["distortion_model"]; model && model.IsScalar()) {
-    const std::string& name = model.Scalar();
-    if (name != "plumb_bob" && name != "rational_polynomial")
-      throw Error("distortion_model is " + excerpt(name) + ", expected plumb_bob or rational_polynomial");
+  const std::string model = text_at(camera, "distortion_model");
+  const bool is_fisheye = model == "equidistant" || model == "fisheye";
+  if (!model.empty() && model != "plumb_bob" && model != "rational_polynomial" && !is_fisheye) {
+    throw Error("distortion_model is " + excerpt(model) +
+                ", expected plumb_bob, rational_polynomial or equidistant");
   }
   return {needed<9>(camera, {"camera_matrix"}),
           matrix_named(camera, {"distortion_coefficients"}).value_or(Numbers{}),
-          needed<9>(camera, {"rectification_matrix"}), ros_projection(camera)};
+          needed<9>(camera, {"rectification_matrix"}), ros_projection(camera), is_fisheye};
 }
 
 RawCalibration raw_from_ros(const YAML::Node& one, const YAML::Node& other) {
@@ -395,16 +465,18 @@ RawCalibration raw_from_ros(const YAML::Node& one, const YAML::Node& other) {
 /// Rows of T_BS: from the camera to the body.
 using Pose = std::array<double, 16>;
 
+/// With fx fy cx cy as `intrinsics`.
+RawCamera camera_of_intrinsics(const YAML::Node& camera, const char* distortion, bool is_fisheye) {
+  const auto [fx, fy, cx, cy] = fixed<4>(list_at(camera, "intrinsics").value_or(Numbers{}), "intrinsics");
+  return {
+      {fx, 0, cx, 0, fy, cy, 0, 0, 1}, list_at(camera, distortion).value_or(Numbers{}), {}, {}, is_fisheye};
+}
+
 RawCamera euroc_camera(const YAML::Node& camera) {
-  const YAML::Node model = camera["distortion_model"];
-  const std::string name = model && model.IsScalar() ? model.Scalar() : "";
+  const std::string name = text_at(camera, "distortion_model");
   if (name != "radial-tangential")
     throw Error("distortion_model is " + excerpt(name) + ", expected radial-tangential");
-  const auto [fx, fy, cx, cy] = fixed<4>(list_at(camera, "intrinsics").value_or(Numbers{}), "intrinsics");
-  return {{fx, 0, cx, 0, fy, cy, 0, 0, 1},
-          list_at(camera, "distortion_coefficients").value_or(Numbers{}),
-          {},
-          {}};
+  return camera_of_intrinsics(camera, "distortion_coefficients", false);
 }
 
 /// x_right = Rᵣᵀ · (Rₗ · x_left + tₗ − tᵣ), with R and t of T_BS.
@@ -441,6 +513,46 @@ RawCalibration raw_from_euroc(const YAML::Node& left, const fs::path& path) {
   return raw;
 }
 
+// ---- Kalibr ----
+
+bool is_kalibr(const YAML::Node& map) {
+  return map["cam0"] && map["cam0"].IsMap() && map["cam0"]["intrinsics"];
+}
+
+RawCamera kalibr_camera(const YAML::Node& camera, const char* name) {
+  const std::string model = text_at(camera, "camera_model");
+  const std::string distortion = text_at(camera, "distortion_model");
+  const bool is_known = distortion == "radtan" || distortion == "equidistant" || distortion == "none";
+  if (model != "pinhole" || !is_known) {
+    throw Error(std::string(name) + " has the model " + excerpt(model + "-" + distortion) +
+                ", expected pinhole-radtan, pinhole-equidistant or pinhole-none");
+  }
+  return camera_of_intrinsics(camera, "distortion_coeffs", distortion == "equidistant");
+}
+
+/// A camchain of two cameras. The left one is the one that sees the other to its right.
+RawCalibration raw_from_kalibr(const YAML::Node& map) {
+  const YAML::Node first = map["cam0"];
+  const YAML::Node second = map["cam1"];
+  if (!second || !second.IsMap()) throw Error("is Kalibr's camchain without cam1, expected both cameras");
+  Statement says;
+  read_size(first, says);
+  RawCalibration raw;
+  raw.image_size = raw_size(says);
+  raw.left = kalibr_camera(first, "cam0");
+  raw.right = kalibr_camera(second, "cam1");
+  // From cam0 to cam1: with cam1's pose as the identity, relate() returns this pose.
+  const Pose from_first = needed<16>(second, {"T_cn_cnm1"});
+  constexpr Pose kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  if (from_first[3] < 0) {
+    relate(from_first, kIdentity, raw);
+  } else {
+    std::swap(raw.left, raw.right);
+    relate(kIdentity, from_first, raw);
+  }
+  return raw;
+}
+
 // ---- our own ----
 
 Statement read_own(const YAML::Node& map) {
@@ -472,10 +584,13 @@ Statement read_own(const YAML::Node& map) {
 
 std::optional<fs::path> other_camera(const fs::path& path) {
   std::string name = path.filename().string();
-  for (const auto& [word, other] : {std::pair{"left", "right"}, std::pair{"right", "left"}}) {
-    const std::size_t at = name.rfind(word);
-    if (at == std::string::npos) continue;
-    return path.parent_path() / name.replace(at, std::string_view(word).size(), other);
+  for (const auto& [left, right] : {std::pair{"left", "right"}, std::pair{"Left", "Right"},
+                                    std::pair{"LEFT", "RIGHT"}, std::pair{"_L.", "_R."}}) {
+    for (const auto& [word, other] : {std::pair{left, right}, std::pair{right, left}}) {
+      const std::size_t at = name.rfind(word);
+      if (at == std::string::npos) continue;
+      return path.parent_path() / name.replace(at, std::string_view(word).size(), other);
+    }
   }
   return std::nullopt;
 }
@@ -483,8 +598,10 @@ std::optional<fs::path> other_camera(const fs::path& path) {
 std::optional<Statement> read_yaml(std::string_view text, const fs::path& path) try {
   const std::vector<YAML::Node> documents = documents_of(text);
   if (documents.empty() || !documents.front().IsMap()) return std::nullopt;
-  const YAML::Node& map = documents.front();
   if (const auto pair = ros_pair(documents, path)) return from_ros_pair(pair->first, pair->second);
+  const YAML::Node map = with_other_half(documents.front(), path);
+  if (is_kalibr(map))
+    throw Error("is Kalibr's camchain of raw cameras: rectify the images with it (cairn rectify, --rectify)");
   if (std::optional<Statement> says = read_opencv(map)) return says;
   return read_own(map);
 } catch (const YAML::Exception& exception) {
@@ -501,7 +618,8 @@ RawCalibration read_raw(std::string_view text, const fs::path& path) try {
     throw Error("is not a YAML map, expected the calibration of raw cameras");
   if (const auto pair = ros_pair(documents, path)) return raw_from_ros(pair->first, pair->second);
   if (documents.front()["T_BS"]) return raw_from_euroc(documents.front(), path);
-  return read_raw_opencv(documents.front());
+  if (is_kalibr(documents.front())) return raw_from_kalibr(documents.front());
+  return read_raw_opencv(with_other_half(documents.front(), path));
 } catch (const YAML::Exception& exception) {
   throw Error("is not a calibration: " + exception.msg);
 }

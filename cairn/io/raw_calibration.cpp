@@ -26,6 +26,10 @@ void check_camera(const RawCamera& camera, const std::string& name) {
                 written(camera.matrix[4]) + ", expected positive numbers");
   }
   const std::size_t count = camera.distortion.size();
+  if (camera.is_fisheye && count != 4) {
+    throw Error("the " + name + " camera has " + std::to_string(count) +
+                " distortion coefficients, expected the 4 of a fisheye lens");
+  }
   if (count != 0 && count != 4 && count != 5 && count != 8 && count != 12 && count != 14) {
     throw Error("the " + name + " camera has " + std::to_string(count) +
                 " distortion coefficients, expected 0, 4, 5, 8, 12 or 14");
@@ -35,6 +39,9 @@ void check_camera(const RawCamera& camera, const std::string& name) {
 void check(const RawCalibration& calibration) {
   check_camera(calibration.left, "left");
   check_camera(calibration.right, "right");
+  if (calibration.left.is_fisheye != calibration.right.is_fisheye)
+    throw Error("has one fisheye lens and one that is none, expected two of a kind");
+  if (calibration.image_size.area() == 0) throw Error("has no width and height of the images");
   const bool rectifies = calibration.left.rotation && calibration.left.projection &&
                          calibration.right.rotation && calibration.right.projection;
   if (!rectifies && !(calibration.rotation && calibration.translation_m))
@@ -53,10 +60,11 @@ bool is_of_rectified_pair(const fs::path& path) {
 
 }  // namespace
 
-RawCalibration load_raw_calibration(const fs::path& path) {
+RawCalibration load_raw_calibration(const fs::path& path, const std::function<Size()>& image_size) {
   const std::string text = read_file(path, kMaxTextBytes);
   try {
     RawCalibration calibration = read_raw(text, path);
+    if (calibration.image_size.area() == 0 && image_size) calibration.image_size = image_size();
     check(calibration);
     return calibration;
   } catch (const Error& error) {

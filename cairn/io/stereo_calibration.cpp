@@ -54,10 +54,19 @@ RawCalibration with_rectification(RawCalibration raw) {
   cv::Mat left_projection;
   cv::Mat right_projection;
   cv::Mat reprojection;
-  cv::stereoRectify(matrix(raw.left.matrix, 3), raw.left.distortion, matrix(raw.right.matrix, 3),
-                    raw.right.distortion, size_of(raw.image_size), matrix(*raw.rotation, 3),
-                    matrix(*raw.translation_m, 3), left_rotation, right_rotation, left_projection,
-                    right_projection, reprojection, cv::CALIB_ZERO_DISPARITY, 0);
+  const cv::Mat rotation = matrix(*raw.rotation, 3);
+  const cv::Mat translation = matrix(*raw.translation_m, 3);
+  const cv::Size size = size_of(raw.image_size);
+  if (raw.left.is_fisheye) {
+    cv::fisheye::stereoRectify(matrix(raw.left.matrix, 3), raw.left.distortion, matrix(raw.right.matrix, 3),
+                               raw.right.distortion, size, rotation, translation, left_rotation,
+                               right_rotation, left_projection, right_projection, reprojection,
+                               cv::CALIB_ZERO_DISPARITY);
+  } else {
+    cv::stereoRectify(matrix(raw.left.matrix, 3), raw.left.distortion, matrix(raw.right.matrix, 3),
+                      raw.right.distortion, size, rotation, translation, left_rotation, right_rotation,
+                      left_projection, right_projection, reprojection, cv::CALIB_ZERO_DISPARITY, 0);
+  }
   raw.left.rotation = numbers_of<9>(left_rotation);
   raw.right.rotation = numbers_of<9>(right_rotation);
   raw.left.projection = numbers_of<12>(left_projection);
@@ -198,8 +207,16 @@ Rectifier::Rectifier(const RawCalibration& calibration) : maps_(std::make_unique
     const RawCalibration raw = with_rectification(calibration);
     maps_->size = raw.image_size;
     const auto map = [&](const RawCamera& camera, cv::Mat& x, cv::Mat& y) {
-      cv::initUndistortRectifyMap(matrix(camera.matrix, 3), camera.distortion, matrix(*camera.rotation, 3),
-                                  matrix(*camera.projection, 3), size_of(raw.image_size), CV_32FC1, x, y);
+      const cv::Mat lens = matrix(camera.matrix, 3);
+      const cv::Mat rotation = matrix(*camera.rotation, 3);
+      const cv::Mat projection = matrix(*camera.projection, 3);
+      const cv::Size size = size_of(raw.image_size);
+      if (camera.is_fisheye) {
+        cv::fisheye::initUndistortRectifyMap(lens, camera.distortion, rotation, projection, size, CV_32FC1, x,
+                                             y);
+      } else {
+        cv::initUndistortRectifyMap(lens, camera.distortion, rotation, projection, size, CV_32FC1, x, y);
+      }
     };
     map(raw.left, maps_->left_x, maps_->left_y);
     map(raw.right, maps_->right_x, maps_->right_y);

@@ -22,7 +22,7 @@ struct PyCalibration {
 
   /// Throws Error if it is for images of another size.
   void check(Size size) const {
-    io::check_size(calibration, size, path);
+    (void)io::suited(calibration, size, path);
     io::check_search_range(calibration, path);
   }
   [[nodiscard]] const std::optional<StereoRig>& rig() const { return calibration.rig; }
@@ -49,7 +49,7 @@ PyConfig make_config(const std::string& preset, const std::optional<std::string>
 
 CAIRN_MEMBERS(KnownGround, points, camera_height_m, camera_pitch_deg, camera_roll_deg)
 CAIRN_MEMBERS(StereoRig, focal_px, cx_px, cy_px, baseline_m, doffs_px)
-CAIRN_MEMBERS(io::Calibration, rig, image_size, num_disparities, _ground, of_raw_cameras)
+CAIRN_MEMBERS(io::Calibration, rig, image_size, num_disparities, _ground, of_raw_cameras, remarks)
 CAIRN_MEMBERS(PyCalibration, _calibration, _path)
 CAIRN_MEMBERS(PyConfig, preset, _config, _range_given)
 

@@ -215,7 +215,7 @@ class CameraSequence : public SourceSequence {
 
   void check_calibration() {
     calibration_.suit(watch_.image_size());
-    if (auto raw = calibration_.remark_on_raw("")) remarks_.push_back(std::move(*raw));
+    std::ranges::move(calibration_.remarks(""), std::back_inserter(remarks_));
   }
 
   void note_openings() {

@@ -357,11 +357,11 @@ TEST_F(CalibrationFiles, DamagedFilesCauseNothingWorseThanAnError) {
 
 TEST_F(CalibrationFiles, ACalibrationForAnotherImageSizeIsRefused) {
   io::Calibration calibration;
-  io::check_size(calibration, {320, 240}, "calib.txt");
+  (void)io::suited(calibration, {320, 240}, "calib.txt");
   calibration.image_size = Size{640, 480};
-  io::check_size(calibration, {640, 480}, "calib.txt");
+  (void)io::suited(calibration, {640, 480}, "calib.txt");
   EXPECT_EQ(refusal([&] {
-              io::check_size(calibration, {320, 240}, "calib.txt");
+              (void)io::suited(calibration, {320, 240}, "calib.txt");
             }),
             "calib.txt: the calibration is for 640x480, the images are 320x240");
 }
