@@ -92,7 +92,7 @@ Work declare_rectify(CLI::App& app) {
   app.add_option("RIGHT", options->input.right, "right image; not with a folder")->type_name("");
   app.add_option("--calib", options->input.calib,
                  "output of cairn calibrate; or OpenCV YAML or XML with M1 D1 M2 D2 R T, ROS camera_info, "
-                 "or EuRoC's cam0/sensor.yaml")
+                 "EuRoC's cam0/sensor.yaml, or Kalibr's camchain")
       ->required()
       ->type_name("FILE");
   app.add_option("-o,--output", options->output,

@@ -224,6 +224,62 @@ TEST(Rectifier, LeavesARectifiedPairUnchanged) {
   }
 }
 
+/// A dot at a point in metres, in the image of a fisheye camera at (x_m, 0, 0).
+Image<Gray> fisheye_dot(const io::RawCamera& camera, Size size, double x_m,
+                        const std::array<double, 3>& point) {
+  const double a = (point[0] - x_m) / point[2];
+  const double b = point[1] / point[2];
+  const double r = std::hypot(a, b);
+  const double t = std::atan(r);
+  const auto& k = camera.distortion;
+  const double distorted =
+      t * (1 + k[0] * std::pow(t, 2) + k[1] * std::pow(t, 4) + k[2] * std::pow(t, 6) + k[3] * std::pow(t, 8));
+  const double u = camera.matrix[0] * distorted / r * a + camera.matrix[2];
+  const double v = camera.matrix[4] * distorted / r * b + camera.matrix[5];
+  Image<Gray> image(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x)
+      image(x, y) = static_cast<Gray>(255 * std::exp(-(std::pow(x - u, 2) + std::pow(y - v, 2)) / 8));
+  }
+  return image;
+}
+
+std::array<double, 2> centre_of(const Image<Gray>& image) {
+  std::array<double, 3> sums{};
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      sums[0] += image(x, y) * double{1} * x;
+      sums[1] += image(x, y) * double{1} * y;
+      sums[2] += image(x, y);
+    }
+  }
+  return {sums[0] / sums[2], sums[1] / sums[2]};
+}
+
+TEST(Rectifier, FisheyePairsHaveEqualRowsAndTheRightDistance) {
+  if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
+  constexpr Size kSize{320, 240};
+  io::RawCalibration raw{kSize, {}, {}, {}, {}};
+  raw.left.matrix = raw.right.matrix = {150, 0, 159.5, 0, 150, 119.5, 0, 0, 1};
+  raw.left.distortion = raw.right.distortion = {-0.01, 0.02, -0.01, 0.002};
+  raw.left.is_fisheye = raw.right.is_fisheye = true;
+  raw.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  raw.translation_m = {-0.1, 0, 0};
+  const io::Rectifier rectify(raw);
+  EXPECT_NEAR(double{rectify.rig().baseline_m}, 0.1, 1e-6);
+  for (const std::array<double, 3>& point :
+       {std::array{0.1, 0.1, 1.0}, std::array{-0.5, 0.3, 1.2}, std::array{0.7, -0.4, 1.5}}) {
+    const io::LoadedPair pair = rectify(
+        {{fisheye_dot(raw.left, kSize, 0, point), {}}, {fisheye_dot(raw.right, kSize, 0.1, point), {}}});
+    const auto [left_x, left_y] = centre_of(pair.left.gray);
+    const auto [right_x, right_y] = centre_of(pair.right.gray);
+    EXPECT_NEAR(left_y, right_y, 0.1);
+    EXPECT_NEAR(left_x - right_x, double{rectify.rig().focal_px} * 0.1 / point[2], 0.1);
+    EXPECT_NEAR(left_x, double{rectify.rig().focal_px} * point[0] / point[2] + double{rectify.rig().cx_px},
+                0.3);
+  }
+}
+
 TEST(Calibration, RecoversSimulatedCameras) {
   if (!is_built_in()) GTEST_SKIP() << "built without OpenCV's calib3d";
   // Corners of a board in eight poses, seen by two cameras without distortion, 0.2 m apart.

@@ -120,10 +120,22 @@ TEST_F(CalibrationFiles, WithoutFocalLengthOrBaselineThereIsNoRig) {
 }
 
 TEST_F(CalibrationFiles, AMisspeltBaselineIsRefused) {
-  EXPECT_TRUE(has(refused("fx=100\ncx=1\ncy=2\nbasline=0.1\n"), {"basline", "did you mean 'baseline'"}));
   EXPECT_TRUE(
-      has(refused("fx=100\ncx=1\ncy=2\nbaseline_m=0.1\n"), {"baseline_m", "did you mean 'baseline'"}));
-  EXPECT_TRUE(has(refused("cam0=[100 0 1; 0 100 2; 0 0 1]\nBaseline=160\n"), {"did you mean 'baseline'"}));
+      has(refused("fx=100\ncx=1\ncy=2\nbasline=0.1\n"), {"basline", "expected 'baseline' in metres"}));
+  EXPECT_TRUE(has(refused("fx=100\ncx=1\ncy=2\nbaseline_mm=100\n"), {"baseline_mm", "'baseline' in metres"}));
+  EXPECT_TRUE(has(refused("cam0=[100 0 1; 0 100 2; 0 0 1]\nBaseline=160\n"), {"'baseline' in millimetres"}));
+}
+
+TEST_F(CalibrationFiles, UnknownKeysAreNamed) {
+  const io::Calibration calibration = read(std::string(kKeyValue) + "lens=wide\nTx=3\n");
+  ASSERT_EQ(calibration.remarks.size(), 1U);
+  EXPECT_TRUE(has(calibration.remarks[0], {"Tx", "lens"}));
+  EXPECT_TRUE(read(kKeyValue).remarks.empty());
+}
+
+TEST_F(CalibrationFiles, KeysOfOtherProgramsInsteadOfTheseAreRefused) {
+  EXPECT_TRUE(has(refused("f=500\ncx=320\ncy=240\nbf=60\n"), {"no fx", "'f'", "'bf'", "expected fx"}));
+  EXPECT_TRUE(has(refused("fx=500\ncx=320\ncy=240\nbf=60\n"), {"no baseline", "'bf'"}));
 }
 
 TEST_F(CalibrationFiles, ARigWithoutCentreIsRefused) {
@@ -157,7 +169,29 @@ TEST_F(CalibrationFiles, InvalidNumbersAreRefusedWithTheirKey) {
 
 TEST_F(CalibrationFiles, UnequalFocalLengthsAreRefusedButForRounding) {
   EXPECT_TRUE(has(refused(replaced(kKeyValue, "fy=271.5", "fy=280")), {"271.5", "280"}));
-  EXPECT_TRUE(read(replaced(kKeyValue, "fy=271.5", "fy=271.6")).rig);
+  EXPECT_TRUE(read(replaced(kKeyValue, "fy=271.5", "fy=271.6")).remarks.empty());
+  const io::Calibration calibration = read(replaced(kKeyValue, "fy=271.5", "fy=272"));
+  EXPECT_FLOAT_EQ(calibration.rig->focal_px, 271.5F);
+  ASSERT_EQ(calibration.remarks.size(), 1U);
+  EXPECT_TRUE(has(calibration.remarks[0], {"271.5", "272", "0.18 %"}));
+}
+
+TEST_F(CalibrationFiles, KTxtIsACameraMatrixAndTheBaseline) {
+  const io::Calibration calibration =
+      read("754.66 0.0 489.37 0.0 754.66 265.16 0.0 0.0 1.0\n0.063\n", "K.txt");
+  ASSERT_TRUE(calibration.rig);
+  EXPECT_FLOAT_EQ(calibration.rig->focal_px, 754.66F);
+  EXPECT_FLOAT_EQ(calibration.rig->cx_px, 489.37F);
+  EXPECT_FLOAT_EQ(calibration.rig->cy_px, 265.16F);
+  EXPECT_FLOAT_EQ(calibration.rig->baseline_m, 0.063F);
+  EXPECT_TRUE(has(refused("754.66 0 489.37 0 754.66 265.16 0 0 1\n"), {"not a calibration"}));
+}
+
+TEST_F(CalibrationFiles, FilesOfOtherProgramsAreNamedWithWhatToCopy) {
+  EXPECT_TRUE(has(refused("Camera.fx: 500\nCamera.bf: 60\n"), {"ORB-SLAM", "Camera.bf / Camera.fx"}));
+  EXPECT_TRUE(has(refused("[LEFT_CAM_HD]\nfx=500\n[STEREO]\nBaseline=120\n"), {"ZED", "M1 D1"}));
+  EXPECT_TRUE(has(refused("{\"value0\": {\"T_imu_cam\": []}}"), {"Basalt"}));
+  EXPECT_TRUE(has(refused("cam0:\n  intrinsics: [1, 1, 1, 1]\n"), {"Kalibr", "cairn rectify"}));
 }
 
 // ---- Middlebury ----
@@ -241,6 +275,21 @@ TEST_F(CalibrationFiles, OpenCvYamlXmlAndJsonAreEquivalent) {
                          "stereo.json"));
 }
 
+TEST_F(CalibrationFiles, MatricesMayBeListsOrRows) {
+  expect_common_rig(
+      read("%YAML:1.0\nP1: [550, 0, 320, 0, 0, 550, 240, 0, 0, 0, 1, 0]\n"
+           "P2:[550, 0, 330, -66, 0, 550, 240, 0, 0, 0, 1, 0]\nsize: [640, 480]\n"));
+  expect_common_rig(
+      read("P1: [[550, 0, 320, 0], [0, 550, 240, 0], [0, 0, 1, 0]]\n"
+           "P2: [[550, 0, 330, -66], [0, 550, 240, 0], [0, 0, 1, 0]]\nsize: [640, 480]\n"));
+  expect_common_rig(
+      read("left_rect:\n  P: [[550, 0, 320, 0], [0, 550, 240, 0], [0, 0, 1, 0]]\n  size: [640, 480]\n"
+           "right_rect:\n  P: [[550, 0, 330, -66], [0, 550, 240, 0], [0, 0, 1, 0]]\n"));
+  std::string tight(kOpenCvYaml);
+  for (std::size_t at = 0; (at = tight.find("data: [")) != std::string::npos;) tight.erase(at + 5, 1);
+  expect_common_rig(read(tight));
+}
+
 TEST_F(CalibrationFiles, OpenCvsQIsEnough) {
   expect_common_rig(read(
       "%YAML:1.0\n---\nQ: !!opencv-matrix\n   rows: 4\n   cols: 4\n   dt: d\n   data: [ 1., 0., 0., "
@@ -273,7 +322,8 @@ TEST_F(CalibrationFiles, DamagedOpenCvIsRefused) {
 TEST_F(CalibrationFiles, ARosPairIsFoundFromEitherOfItsFiles) {
   for (const auto& [left, right] :
        {std::pair{"left.yaml", "right.yaml"}, std::pair{"cam_left.yaml", "cam_right.yaml"},
-        std::pair{"left_info.yml", "right_info.yml"}}) {
+        std::pair{"left_info.yml", "right_info.yml"}, std::pair{"CamLeft.yaml", "CamRight.yaml"},
+        std::pair{"info_L.yaml", "info_R.yaml"}}) {
     const fs::path left_path = folder_.with(std::string("pair/") + left, kRosLeft);
     const fs::path right_path = folder_.with(std::string("pair/") + right, kRosRight);
     expect_common_rig(io::load_calibration(left_path));
@@ -292,6 +342,14 @@ TEST_F(CalibrationFiles, ARosPairMayBeInOneFile) {
     return out + "\n";
   };
   expect_common_rig(read("left:\n" + indented(kRosLeft) + "right:\n" + indented(kRosRight), "both.yaml"));
+}
+
+TEST_F(CalibrationFiles, PrintedMessagesMayEndWithASeparatorAndCommentsMayHaveEquals) {
+  (void)folder_.with("right.yaml", std::string(kRosRight) + "---\n");
+  expect_common_rig(read("# fx = fy\n" + std::string(kRosLeft) + "---\n", "left.yaml"));
+  expect_common_rig(
+      read("focal_px: 550  # fx = fy\ncx_px: 320\ncy_px: 240\nbaseline_m: 0.12\ndoffs_px: 10\n"
+           "width: 640\nheight: 480\n"));
 }
 
 TEST_F(CalibrationFiles, ASingleRosCameraIsRefusedWithTheMissingName) {
@@ -360,10 +418,28 @@ TEST_F(CalibrationFiles, ACalibrationForAnotherImageSizeIsRefused) {
   (void)io::suited(calibration, {320, 240}, "calib.txt");
   calibration.image_size = Size{640, 480};
   (void)io::suited(calibration, {640, 480}, "calib.txt");
-  EXPECT_EQ(refusal([&] {
-              (void)io::suited(calibration, {320, 240}, "calib.txt");
-            }),
-            "calib.txt: the calibration is for 640x480, the images are 320x240");
+  EXPECT_EQ(
+      refusal([&] {
+        (void)io::suited(calibration, {320, 240}, "calib.txt");
+      }),
+      "calib.txt: the calibration is for 640x480, the images are 320x240 (--scale-calibration if they were "
+      "only resized)");
+}
+
+TEST_F(CalibrationFiles, ACalibrationIsScaledOnRequest) {
+  const io::Calibration full = read(kKeyValue);
+  const io::Calibration half = io::suited(full, {160, 120}, "calib.txt", true);
+  EXPECT_FLOAT_EQ(half.rig->focal_px, 135.75F);
+  EXPECT_FLOAT_EQ(half.rig->cx_px, 79.5F);  // the middle between two pixels stays there
+  EXPECT_FLOAT_EQ(half.rig->cy_px, 59.375F);
+  EXPECT_FLOAT_EQ(half.rig->baseline_m, 0.108F);
+  EXPECT_FLOAT_EQ(half.rig->doffs_px, 1.25F);
+  EXPECT_EQ(half.num_disparities, 16);
+  EXPECT_EQ(half.image_size, (Size{160, 120}));
+  EXPECT_TRUE(has(refusal([&] {
+                    (void)io::suited(full, {160, 90}, "calib.txt", true);
+                  }),
+                  {"calib.txt", "320x240", "160x90", "cut off"}));
 }
 
 constexpr std::string_view kPoints = "10,200,4,200;300,210,293,210;20,230,12,230;280,190,275,190";

@@ -130,6 +130,53 @@ TEST(RawCalibration, IsReadFromEurocsTwoSensors) {
   EXPECT_TRUE(has(refusal([&] { (void)io::load_raw_calibration(left); }), {"cam1/sensor.yaml"}));
 }
 
+constexpr std::string_view kIntrinsics =
+    "%YAML:1.0\n---\nM1: [335, 0, 342, 0, 336, 232, 0, 0, 1]\nD1: [-0.3, 0.1, 0, 0, 0]\n"
+    "M2: [335, 0, 301, 0, 336, 245, 0, 0, 1]\nD2: [-0.3, 0.1, 0, 0, 0]\n";
+constexpr std::string_view kExtrinsics =
+    "%YAML:1.0\n---\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-0.0596, 0, 0]\n";
+
+TEST(RawCalibration, IsReadFromEitherFileOfOpenCvsSampleAndTakesTheSizeOfTheImages) {
+  const TemporaryFolder folder;
+  const auto files = {folder.with("intrinsics.yml", kIntrinsics), folder.with("extrinsics.yml", kExtrinsics)};
+  for (const auto& file : files) {
+    const io::RawCalibration raw = io::load_raw_calibration(file, [] { return Size{640, 480}; });
+    EXPECT_EQ(raw.image_size, (Size{640, 480}));
+    EXPECT_EQ(raw.left.matrix[4], 336);
+    EXPECT_EQ(raw.right.distortion.size(), 5U);
+    ASSERT_TRUE(raw.translation_m);
+    EXPECT_EQ((*raw.translation_m)[0], -0.0596);
+    EXPECT_TRUE(has(refusal([&] { (void)io::load_raw_calibration(file); }), {"no width and height"}));
+  }
+}
+
+std::string kalibr(const std::string& x, const std::string& model = "radtan") {
+  const std::string camera =
+      "  camera_model: pinhole\n  distortion_coeffs: [-0.28, 0.07, 0.0002, 0.00002]\n  distortion_model: " +
+      model + "\n  resolution: [752, 480]\n";
+  return "cam0:\n  intrinsics: [458, 457, 367, 248]\n" + camera +
+         "cam1:\n  intrinsics: [459, 456, 379, 255]\n  T_cn_cnm1:\n  - [1, 0, 0, " + x +
+         "]\n  - [0, 1, 0, 0.001]\n  - [0, 0, 1, 0]\n  - [0, 0, 0, 1]\n" + camera;
+}
+
+TEST(RawCalibration, IsReadFromKalibrsCamchain) {
+  const TemporaryFolder folder;
+  io::RawCalibration raw = io::load_raw_calibration(folder.with("camchain.yaml", kalibr("-0.11")));
+  EXPECT_EQ(raw.image_size, (Size{752, 480}));
+  EXPECT_EQ(raw.left.matrix, (std::array<double, 9>{458, 0, 367, 0, 457, 248, 0, 0, 1}));
+  EXPECT_EQ(raw.right.matrix[0], 459);
+  EXPECT_FALSE(raw.left.is_fisheye);
+  EXPECT_EQ(raw.translation_m, (std::array<double, 3>{-0.11, 0.001, 0}));
+  // cam1 is the left camera.
+  raw = io::load_raw_calibration(folder.with("camchain.yaml", kalibr("0.11", "equidistant")));
+  EXPECT_EQ(raw.left.matrix[0], 459);
+  EXPECT_TRUE(raw.left.is_fisheye);
+  EXPECT_EQ(raw.translation_m, (std::array<double, 3>{-0.11, -0.001, 0}));
+  EXPECT_TRUE(has(
+      refusal([&] { (void)io::load_raw_calibration(folder.with("camchain.yaml", kalibr("-0.11", "fov"))); }),
+      {"cam0", "pinhole-fov", "pinhole-equidistant"}));
+}
+
 TEST(RawCalibration, RefusesCalibrationsThatCannotRectify) {
   const TemporaryFolder folder;
   const auto refuses = [&](const std::string& text, const std::vector<std::string>& words) {
@@ -153,8 +200,11 @@ TEST(RawCalibration, RefusesCalibrationsThatCannotRectify) {
       refusal([&] { (void)io::load_raw_calibration(folder.path() / "calib.yaml"); }).find("3 distortion"),
       std::string::npos);
   (void)folder.with("right.yaml", ros("-66"));
-  const auto fisheye = folder.with("left.yaml", ros("0", "equidistant"));
-  EXPECT_NE(refusal([&] { (void)io::load_raw_calibration(fisheye); }).find("equidistant"), std::string::npos);
+  const auto omni = folder.with("left.yaml", ros("0", "mei"));
+  EXPECT_NE(refusal([&] { (void)io::load_raw_calibration(omni); }).find("mei"), std::string::npos);
+  const auto fisheye = folder.with("left.yaml", ros("0", "equidistant"));  // with five coefficients
+  EXPECT_NE(refusal([&] { (void)io::load_raw_calibration(fisheye); }).find("expected the 4 of a fisheye"),
+            std::string::npos);
   EXPECT_NE(refusal([&] { (void)io::load_raw_calibration(folder.path() / "none"); }).find("none"),
             std::string::npos);
 }
