@@ -59,9 +59,18 @@ Detections& of_size(std::vector<Detections>& groups, Size size) {
 /// `of_other_size`.
 Detections look_at(const std::vector<io::FrameFiles>& pairs, const io::Board& board,
                    std::vector<std::string>& of_other_size) {
+  constexpr std::size_t kSuspicious = 3;
   std::vector<Detections> groups;
   const Progress progress(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const bool found_none =
+        std::ranges::all_of(groups, [](const Detections& group) { return group.list.empty(); });
+    if (i == kSuspicious && found_none) {
+      progress.clear();
+      std::cerr << "cairn: no board with " << board.columns << "x" << board.rows
+                << " inner corners in the first " << i
+                << " pairs; still looking (a board of 10x7 squares has 9x6 inner corners)\n";
+    }
     progress.at(i, pairs[i].name);
     const io::LoadedPair images = io::load_pair(pairs[i].left, right_of(pairs[i]));
     Detections& group = of_size(groups, images.left.gray.size());

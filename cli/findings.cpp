@@ -38,9 +38,9 @@ void PassingFindings::tell() const {
   for (const Finding& finding : united(of_frames_)) {
     const std::string_view remedy = info(finding.kind).remedy;
     std::cerr << "cairn: " << name_of(finding.severity) << ": " << info(finding.kind).name << ": "
-              << finding.says << frames_text(finding, names_, "frames") << ". "
-              << remedy.substr(0, remedy.find(". ")) << (remedy.find(". ") < remedy.size() ? "." : "")
-              << "\n";
+              << finding.says << frames_text(finding, names_, "frames")
+              << (finding.says.ends_with('?') ? " " : ". ") << remedy.substr(0, remedy.find(". "))
+              << (remedy.find(". ") < remedy.size() ? "." : "") << "\n";
   }
   if (doubtful_ == 0) return;
   std::cerr << "cairn: note: " << doubtful_

@@ -7,6 +7,7 @@
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/calibration_forms.hpp>
 #include <cairn/io/dataset.hpp>
+#include <cairn/io/frame_names.hpp>
 #include <cairn/io/raster.hpp>
 #include <cairn/io/read_file.hpp>
 #include <cairn/pipeline/config.hpp>
@@ -243,8 +244,7 @@ fs::path file_in(const fs::path& folder) {
     const fs::path& path = it->path();
     const bool yaml = path.extension() == ".yaml" || path.extension() == ".yml";
     const std::optional<fs::path> other = other_camera(path);
-    if (yaml && path.filename().string().find("left") != std::string::npos && other &&
-        fs::is_regular_file(*other)) {
+    if (yaml && !is_hidden(path) && right_named_like(path) && other && fs::is_regular_file(*other)) {
       pairs.push_back(path);
     }
   }

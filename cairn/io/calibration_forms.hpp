@@ -72,7 +72,9 @@ std::optional<Statement> read_yaml(std::string_view text, const std::filesystem:
 /// Both cameras from YAML, XML and JSON of OpenCV, and from a ROS pair.
 RawCalibration read_raw(std::string_view text, const std::filesystem::path& path);
 
-/// left.yaml ↔ right.yaml, *_left ↔ *_right, left_* ↔ right_*, Left ↔ Right, _L ↔ _R; nullopt for other names.
+/// left.yaml → right.yaml, *_left → *_right, left_* → right_*, also Left, LEFT and _L; nullopt for other names.
+std::optional<std::filesystem::path> right_named_like(const std::filesystem::path& left);
+/// The same in both directions.
 std::optional<std::filesystem::path> other_camera(const std::filesystem::path& path);
 
 }  // namespace cairn::io

@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
 #include <cairn/io/calibration_forms.hpp>
@@ -17,6 +18,17 @@ namespace {
 
 namespace fs = std::filesystem;
 using Numbers = std::vector<double>;
+
+constexpr std::array kSides = {std::pair{"left", "right"}, std::pair{"Left", "Right"},
+                               std::pair{"LEFT", "RIGHT"}, std::pair{"_L.", "_R."}};
+
+/// The path with the last `word` of its name replaced; nullopt without it.
+std::optional<fs::path> renamed(const fs::path& path, std::string_view word, std::string_view other) {
+  std::string name = path.filename().string();
+  const std::size_t at = name.rfind(word);
+  if (at == std::string::npos) return std::nullopt;
+  return path.parent_path() / name.replace(at, word.size(), other);
+}
 
 /// A matrix in the format of OpenCV or ROS.
 struct Matrix {
@@ -582,15 +594,17 @@ Statement read_own(const YAML::Node& map) {
 
 }  // namespace
 
+std::optional<fs::path> right_named_like(const fs::path& left) {
+  for (const auto& [word, other] : kSides) {
+    if (std::optional<fs::path> found = renamed(left, word, other)) return found;
+  }
+  return std::nullopt;
+}
+
 std::optional<fs::path> other_camera(const fs::path& path) {
-  std::string name = path.filename().string();
-  for (const auto& [left, right] : {std::pair{"left", "right"}, std::pair{"Left", "Right"},
-                                    std::pair{"LEFT", "RIGHT"}, std::pair{"_L.", "_R."}}) {
-    for (const auto& [word, other] : {std::pair{left, right}, std::pair{right, left}}) {
-      const std::size_t at = name.rfind(word);
-      if (at == std::string::npos) continue;
-      return path.parent_path() / name.replace(at, std::string_view(word).size(), other);
-    }
+  if (std::optional<fs::path> right = right_named_like(path)) return right;
+  for (const auto& [other, word] : kSides) {
+    if (std::optional<fs::path> left = renamed(path, word, other)) return left;
   }
   return std::nullopt;
 }

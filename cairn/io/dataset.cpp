@@ -26,8 +26,8 @@ struct Names {
   const char* left;
   const char* right;
 };
-constexpr std::array kPairs = {Names{"left", "right"}, Names{"im2", "im6"}, Names{"view1", "view5"},
-                               Names{"im0", "im1"}};
+constexpr std::array kPairs = {Names{"left", "right"}, Names{"Left", "Right"}, Names{"im2", "im6"},
+                               Names{"view1", "view5"}, Names{"im0", "im1"}};
 /// Middlebury 2014 has disp0 and disp1 in a folder; disp0 belongs to the left image.
 constexpr std::array kTrueDisparities = {"disp_left", "disp0GT", "disp0", "disp1", "disp2"};
 
@@ -38,6 +38,8 @@ struct Folders {
   Cameras cameras;
 };
 constexpr std::array kFolders = {Folders{"left", "right", false, Cameras::rectified},
+                                 Folders{"Left", "Right", false, Cameras::rectified},
+                                 Folders{"image_left", "image_right", false, Cameras::rectified},
                                  Folders{"image_2", "image_3", false, Cameras::rectified},
                                  Folders{"image_02/data", "image_03/data", false, Cameras::rectified},
                                  Folders{"colored_0", "colored_1", false, Cameras::rectified},
@@ -149,6 +151,7 @@ std::vector<FrameFiles> each_in(const fs::path& folder, const Visit& visit) {
   std::vector<FrameFiles> frames;
   std::error_code reason;
   for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
+    if (is_hidden(it->path())) continue;
     if (std::optional<FrameFiles> frame = visit(it->path())) frames.push_back(std::move(*frame));
   }
   if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
@@ -165,9 +168,8 @@ std::vector<FrameFiles> frames_below(const fs::path& folder) {
 
 /// The right image for a left one, by its name.
 std::optional<fs::path> partner(const fs::path& left) {
-  const std::string name = left.filename().string();
-  const bool is_left = name.find("left") != std::string::npos && !name.starts_with("disp");
-  return is_left ? other_camera(left) : std::nullopt;
+  if (left.filename().string().starts_with("disp")) return std::nullopt;
+  return right_named_like(left);
 }
 
 /// The calibration of one frame of many: KITTI has a file per frame, named by the part before the _, and one
@@ -193,12 +195,14 @@ std::vector<FrameFiles> pairs_of_names(const fs::path& folder) {
   });
 }
 
-/// left/01.jpg and right/01.jpg. Images without a counterpart are ignored if there are pairs.
+/// left/01.jpg and right/01.jpg, image_left/01_left.png and image_right/01_right.png. Images without a counterpart are ignored if there are pairs.
 std::vector<FrameFiles> pairs_in(const fs::path& folder, const Folders& names) {
   std::vector<FrameFiles> all =
       each_in(folder / names.left, [&](const fs::path& left) -> std::optional<FrameFiles> {
         if (!is_picture(left)) return std::nullopt;
-        const fs::path right = folder / names.right / left.filename();
+        fs::path right = folder / names.right / left.filename();
+        const std::optional<fs::path> renamed = partner(left);
+        if (!is_file(right) && renamed) right = folder / names.right / renamed->filename();
         return FrameFiles{
             left.stem().string(), folder, left, file(right), calibration_among(folder, left), right,
             names.grey_cameras};
@@ -257,8 +261,9 @@ bool is_picture(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return is_file(path) && std::find(kPictureExtensions.begin(), kPictureExtensions.end(), extension) !=
-                              kPictureExtensions.end();
+  return is_file(path) && !is_hidden(path) &&
+         std::find(kPictureExtensions.begin(), kPictureExtensions.end(), extension) !=
+             kPictureExtensions.end();
 }
 
 std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras) {

@@ -10,6 +10,10 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
+bool is_hidden(const std::filesystem::path& path) {
+  return path.filename().string().starts_with('.');
+}
+
 bool in_natural_order(const std::string& a, const std::string& b) {
   std::size_t i = 0;
   std::size_t j = 0;

@@ -66,6 +66,7 @@ RawCalibration load_raw_calibration(const fs::path& path, const std::function<Si
     RawCalibration calibration = read_raw(text, path);
     if (calibration.image_size.area() == 0 && image_size) calibration.image_size = image_size();
     check(calibration);
+    calibration.path = path;
     return calibration;
   } catch (const Error& error) {
     if (is_of_rectified_pair(path)) {

@@ -28,6 +28,7 @@ struct RawCalibration {
   RawCamera right;
   std::optional<std::array<double, 9>> rotation{};  // x_right = rotation · x_left + translation
   std::optional<std::array<double, 3>> translation_m{};
+  std::filesystem::path path{};  // of the file, for messages
 };
 
 /// Reads OpenCV FileStorage YAML/XML/JSON (M1 D1 M2 D2 with R T, or with R1 R2 P1 P2; also K1, cameraMatrix1,

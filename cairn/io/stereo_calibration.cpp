@@ -202,7 +202,7 @@ struct Rectifier::Maps {
   cv::Mat right_y;
 };
 
-Rectifier::Rectifier(const RawCalibration& calibration) : maps_(std::make_unique<Maps>()) {
+Rectifier::Rectifier(const RawCalibration& calibration) try : maps_(std::make_unique<Maps>()) {
   with_opencv("rectifying", [&] {
     const RawCalibration raw = with_rectification(calibration);
     maps_->size = raw.image_size;
@@ -224,6 +224,8 @@ Rectifier::Rectifier(const RawCalibration& calibration) : maps_(std::make_unique
     rig_ = rig_of(*raw.left.projection, *raw.right.projection);
     return 0;
   });
+} catch (const Error& error) {
+  throw Error((calibration.path.empty() ? "" : calibration.path.string() + ": ") + error.what());
 }
 
 Rectifier::~Rectifier() = default;
