@@ -139,22 +139,26 @@ class McapSequence : public SourceSequence {
         rectify(*left, *right);
       } else {
         calibration_.says.rig = ros::rig_of(*left, *right);
+        if (const Size size = ros::image_size_of(*left); size.area() > 0) calibration_.says.image_size = size;
       }
     } catch (const Error& error) {
       throw Error(file_.string() + ": " + error.what());
     }
   }
   void rectify(const ros::CameraInfo& left, const ros::CameraInfo& right) {
-    const auto camera = [](const ros::CameraInfo& info) {
-      if (info.distortion_model != "plumb_bob" && info.distortion_model != "rational_polynomial") {
+    const auto camera = [](const ros::CameraInfo& of_sensor) {
+      const ros::CameraInfo info = ros::as_published(of_sensor);
+      const bool is_fisheye = info.distortion_model == "equidistant" || info.distortion_model == "fisheye";
+      if (info.distortion_model != "plumb_bob" && info.distortion_model != "rational_polynomial" &&
+          !is_fisheye) {
         throw Error("camera_info: found the distortion model " + info.distortion_model +
-                    ", expected plumb_bob or rational_polynomial");
+                    ", expected plumb_bob, rational_polynomial or equidistant");
       }
-      return io::RawCamera{info.k, info.d, info.r, info.p};
+      return io::RawCamera{info.k, info.d, info.r, info.p, is_fisheye};
     };
+    (void)ros::rig_of(left, right);
     io::RawCalibration raw;
-    io::check_sides(left.width, left.height);
-    raw.image_size = {static_cast<int>(left.width), static_cast<int>(left.height)};
+    raw.image_size = ros::image_size_of(left);
     raw.left = camera(left);
     raw.right = camera(right);
     calibration_.rectifier = std::make_shared<io::Rectifier>(raw);

@@ -305,16 +305,30 @@ bool ros_distortion(const YAML::Node& camera) {
   return false;
 }
 
-/// The camera with the greater fourth column is the left one: P[0][3] = −fx·B for the right one.
-Statement from_ros_pair(const YAML::Node& one, const YAML::Node& other) {
-  const std::optional<Projection> first = ros_projection(one);
-  const std::optional<Projection> second = ros_projection(other);
-  if (!first || !second) throw Error("the other camera has no projection_matrix");
-  const bool in_order = (*first)[3] >= (*second)[3];
-  Statement says = in_order ? from_projections(*first, *second) : from_projections(*second, *first);
-  read_size(one, says);
-  read_mounting(one, says);
-  says.has_distortion = ros_distortion(one) || ros_distortion(other);
+/// The two cameras. The mounting of the rig and the size of the images are in the file that was named.
+struct RosPair {
+  YAML::Node left;
+  YAML::Node right;
+  YAML::Node named;
+};
+
+/// Throws Error unless both have a projection, and P[0][3], which is −fx·B for the right camera, agrees with the names.
+void check_order(const std::optional<Projection>& left, const std::optional<Projection>& right) {
+  if (!left || !right) throw Error("the other camera has no projection_matrix");
+  if ((*left)[3] >= (*right)[3]) return;
+  throw Error("the names are exchanged: the projection_matrix of the left camera has " + written((*left)[3]) +
+              " as its fourth number, that of the right one " + written((*right)[3]) +
+              ", expected -fx * baseline for the right one");
+}
+
+Statement from_ros_pair(const RosPair& pair) {
+  const std::optional<Projection> left = ros_projection(pair.left);
+  const std::optional<Projection> right = ros_projection(pair.right);
+  check_order(left, right);
+  Statement says = from_projections(*left, *right);
+  read_size(pair.named, says);
+  read_mounting(pair.named, says);
+  says.has_distortion = ros_distortion(pair.left) || ros_distortion(pair.right);
   return says;
 }
 
@@ -334,15 +348,21 @@ YAML::Node ros_partner(const fs::path& path) {
 }
 
 /// Both cameras, from one file or the two of a pair; nullopt if the file is no camera_info.
-std::optional<std::pair<YAML::Node, YAML::Node>> ros_pair(const std::vector<YAML::Node>& documents,
-                                                          const fs::path& path) {
+std::optional<RosPair> ros_pair(const std::vector<YAML::Node>& documents, const fs::path& path) {
   const YAML::Node& map = documents.front();
-  if (documents.size() == 2 && ros_projection(map)) return std::pair{map, documents.back()};
-  for (const auto& [left, right] : {std::pair{"left", "right"}, std::pair{"left_rect", "right_rect"}}) {
-    if (map[left] && map[right]) return std::pair{map[left], map[right]};
+  if (documents.size() == 2 && ros_projection(map)) {
+    // Without names, P tells them apart.
+    const std::optional<Projection> first = ros_projection(map);
+    const std::optional<Projection> second = ros_projection(documents.back());
+    const bool in_order = !second || (*first)[3] >= (*second)[3];
+    return in_order ? RosPair{map, documents.back(), map} : RosPair{documents.back(), map, map};
   }
-  if (ros_projection(map)) return std::pair{map, ros_partner(path)};
-  return std::nullopt;
+  for (const auto& [left, right] : {std::pair{"left", "right"}, std::pair{"left_rect", "right_rect"}}) {
+    if (map[left] && map[right]) return RosPair{map[left], map[right], map[left]};
+  }
+  if (!ros_projection(map)) return std::nullopt;
+  const YAML::Node partner = ros_partner(path);
+  return right_named_like(path) ? RosPair{map, partner, map} : RosPair{partner, map, map};
 }
 
 // ---- the two files of OpenCV's sample stereo_calib ----
@@ -460,15 +480,14 @@ RawCamera raw_camera(const YAML::Node& camera) {
           needed<9>(camera, {"rectification_matrix"}), ros_projection(camera), is_fisheye};
 }
 
-RawCalibration raw_from_ros(const YAML::Node& one, const YAML::Node& other) {
+RawCalibration raw_from_ros(const RosPair& pair) {
   RawCalibration raw;
   Statement says;
-  read_size(one, says);
+  read_size(pair.named, says);
   raw.image_size = raw_size(says);
-  raw.left = raw_camera(one);
-  raw.right = raw_camera(other);
-  if (!raw.left.projection || !raw.right.projection) throw Error("the other camera has no projection_matrix");
-  if ((*raw.left.projection)[3] < (*raw.right.projection)[3]) std::swap(raw.left, raw.right);
+  raw.left = raw_camera(pair.left);
+  raw.right = raw_camera(pair.right);
+  check_order(raw.left.projection, raw.right.projection);
   return raw;
 }
 
@@ -612,7 +631,7 @@ std::optional<fs::path> other_camera(const fs::path& path) {
 std::optional<Statement> read_yaml(std::string_view text, const fs::path& path) try {
   const std::vector<YAML::Node> documents = documents_of(text);
   if (documents.empty() || !documents.front().IsMap()) return std::nullopt;
-  if (const auto pair = ros_pair(documents, path)) return from_ros_pair(pair->first, pair->second);
+  if (const auto pair = ros_pair(documents, path)) return from_ros_pair(*pair);
   const YAML::Node map = with_other_half(documents.front(), path);
   if (is_kalibr(map))
     throw Error("is Kalibr's camchain of raw cameras: rectify the images with it (cairn rectify, --rectify)");
@@ -630,7 +649,7 @@ RawCalibration read_raw(std::string_view text, const fs::path& path) try {
   const std::vector<YAML::Node> documents = documents_of(text);
   if (documents.empty() || !documents.front().IsMap())
     throw Error("is not a YAML map, expected the calibration of raw cameras");
-  if (const auto pair = ros_pair(documents, path)) return raw_from_ros(pair->first, pair->second);
+  if (const auto pair = ros_pair(documents, path)) return raw_from_ros(*pair);
   if (documents.front()["T_BS"]) return raw_from_euroc(documents.front(), path);
   if (is_kalibr(documents.front())) return raw_from_kalibr(documents.front());
   return read_raw_opencv(with_other_half(documents.front(), path));

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cairn/core/error.hpp>
+#include <cairn/io/raster.hpp>
 #include <cmath>
 #include <limits>
 
@@ -143,7 +145,43 @@ CameraInfo camera_info_of(const Header& header, const StereoRig& rig, Size size,
   return info;
 }
 
-StereoRig rig_of(const CameraInfo& left, const CameraInfo& right) {
+CameraInfo as_published(CameraInfo info) {
+  const RegionOfInterest& roi = info.roi;
+  const double offset[2] = {static_cast<double>(roi.x_offset), static_cast<double>(roi.y_offset)};
+  const double binning[2] = {std::max(1.0, static_cast<double>(info.binning_x)),
+                             std::max(1.0, static_cast<double>(info.binning_y))};
+  for (std::size_t row = 0; row < 2; ++row) {
+    info.k[3 * row + 2] -= offset[row];
+    info.p[4 * row + 2] -= offset[row];
+    for (std::size_t i = 0; i < 3; ++i) info.k[3 * row + i] /= binning[row];
+    for (std::size_t i = 0; i < 4; ++i) info.p[4 * row + i] /= binning[row];
+  }
+  const auto binned = [](std::uint32_t full, std::uint32_t part, double by) {
+    return static_cast<std::uint32_t>((part == 0 ? full : part) / by);
+  };
+  info.width = binned(info.width, roi.width, binning[0]);
+  info.height = binned(info.height, roi.height, binning[1]);
+  info.roi = {};
+  info.binning_x = info.binning_y = 0;
+  return info;
+}
+
+Size image_size_of(const CameraInfo& info) {
+  if (info.width == 0 || info.height == 0) return {};
+  io::check_sides(info.width, info.height);
+  const CameraInfo published = as_published(info);
+  return {static_cast<int>(published.width), static_cast<int>(published.height)};
+}
+
+StereoRig rig_of(const CameraInfo& left_info, const CameraInfo& right_info, std::optional<Size> images) {
+  for (const CameraInfo* info : {&left_info, &right_info}) {
+    const Size size = image_size_of(*info);
+    if (!images || size.area() == 0 || size == *images) continue;
+    throw Error("camera_info: is of images of " + text(size) + ", expected " + text(*images) +
+                " as they come");
+  }
+  const CameraInfo left = as_published(left_info);
+  const CameraInfo right = as_published(right_info);
   if (!(left.p[0] > 0) || !(right.p[0] > 0)) {
     throw Error("camera_info: found a focal length of " +
                 std::to_string(!(left.p[0] > 0) ? left.p[0] : right.p[0]) +
@@ -154,6 +192,11 @@ StereoRig rig_of(const CameraInfo& left, const CameraInfo& right) {
                 std::to_string(left.p[0]) + ", " + std::to_string(left.p[6]) + " and " +
                 std::to_string(right.p[0]) + ", " + std::to_string(right.p[6]) +
                 "), expected those of a rectified pair");
+  }
+  if (left.p[3] < right.p[3]) {
+    throw Error("camera_info: the two are exchanged: P[3] of the left camera is " +
+                std::to_string(left.p[3]) + ", that of the right one " + std::to_string(right.p[3]) +
+                ", expected -focal * baseline for the right one");
   }
   const StereoRig rig{static_cast<float>(left.p[0]), static_cast<float>(left.p[2]),
                       static_cast<float>(left.p[6]), static_cast<float>((left.p[3] - right.p[3]) / left.p[0]),

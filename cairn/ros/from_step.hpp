@@ -34,8 +34,14 @@ Image image_of(const Header& header, View<const float> image);  // 32FC1
 enum class Side : std::uint8_t { left, right };
 /// P describes a rectified rig completely (docs/install.md, "With OpenCV"); there is no distortion.
 CameraInfo camera_info_of(const Header& header, const StereoRig& rig, Size size, Side side);
-/// The rig from the P of both cameras. Throws Error unless they belong to one rectified rig.
-StereoRig rig_of(const CameraInfo& left, const CameraInfo& right);
+/// The same for the images as they come: K and P are of the full resolution, of which a camera may publish a region of
+/// interest, and every binning_x-th column (REP 104; sensor_msgs/CameraInfo). The result has neither.
+CameraInfo as_published(CameraInfo info);
+/// The size of the images that it is of; empty if the message has none.
+Size image_size_of(const CameraInfo& info);
+/// The rig from the P of both cameras, as published. Throws Error unless they belong to one rectified rig, in this
+/// order, and to images of this size, if given.
+StereoRig rig_of(const CameraInfo& left, const CameraInfo& right, std::optional<Size> images = std::nullopt);
 
 /// 32FC1 with NaN for holes, or `hole_px` if given: many ROS nodes expect min_disparity − 1. Disparities
 /// count from the principal points, so that depth = f·t / disparity for any rig.doffs_px. Without a rig f and

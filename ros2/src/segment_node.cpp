@@ -63,7 +63,8 @@ class SegmentNode : public rclcpp::Node {
       const cairn::Stamp stamp = stamp_from(left->header);
       // Also after a bag starts again or a simulator is reset: earlier frames are then of no use.
       if (!follower_ || stamp < last_) {
-        rig_ = cairn::ros::rig_of(camera_info_from(*left_info), camera_info_from(*right_info));
+        rig_ = cairn::ros::rig_of(camera_info_from(*left_info), camera_info_from(*right_info),
+                                  cairn::Size{static_cast<int>(left->width), static_cast<int>(left->height)});
         follower_.emplace(config_, rig_, exec_);
       }
       last_ = stamp;

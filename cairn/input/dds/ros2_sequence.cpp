@@ -214,16 +214,8 @@ class Ros2Sequence : public SourceSequence {
   }
 
   [[nodiscard]] StereoRig rig_of_infos(Size size) const {
-    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-      const ros::CameraInfo& info = *last_infos_[side];
-      const Size of_info{static_cast<int>(info.width), static_cast<int>(info.height)};
-      if (of_info != size && of_info.width != 0) {
-        throw Error(prefix_ + "/" + kSides[side] + "/camera_info: is of images of " + text(of_info) +
-                    ", expected " + text(size) + " as they come");
-      }
-    }
     try {
-      return ros::rig_of(*last_infos_[0], *last_infos_[1]);
+      return ros::rig_of(*last_infos_[0], *last_infos_[1], size);
     } catch (const Error& error) {
       throw Error(source_ + ": " + error.what());
     }

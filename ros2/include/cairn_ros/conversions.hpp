@@ -119,12 +119,18 @@ Theirs as(const auto& from) {
 
 // ---- to cairn ----
 
-/// The part of CameraInfo that describes a rectified camera.
+/// The part of CameraInfo that describes a rectified camera and its images.
 cairn::ros::CameraInfo camera_info_from(const auto& from) {
   cairn::ros::CameraInfo to;
   to.height = from.height;
   to.width = from.width;
   std::copy(from.p.begin(), from.p.end(), to.p.begin());
+  to.binning_x = from.binning_x;
+  to.binning_y = from.binning_y;
+  to.roi.x_offset = from.roi.x_offset;
+  to.roi.y_offset = from.roi.y_offset;
+  to.roi.width = from.roi.width;
+  to.roi.height = from.roi.height;
   return to;
 }
 

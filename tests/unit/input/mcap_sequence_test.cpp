@@ -52,6 +52,30 @@ ros::Image message_of_dots(Stamp stamp, unsigned seed) {
   return ros::image_of(ros::header_of(stamp, "camera"), image.view());
 }
 
+TEST_F(McapSequence, TheRigIsThatOfTheImagesAsTheyCome) {
+  const auto record = [&](int twice, std::uint32_t binning) {
+    CameraFile camera(file());
+    StereoRig rig = kRig;
+    for (float* value : {&rig.focal_px, &rig.cx_px, &rig.cy_px, &rig.doffs_px})
+      *value *= static_cast<float>(twice);
+    for (const ros::Side side : {ros::Side::left, ros::Side::right}) {
+      const std::string name = side == ros::Side::left ? "/cam/left/" : "/cam/right/";
+      camera.add(camera.topic<ros::Image>(name + "image_rect"), {1000}, message_of_dots({1000}, 1));
+      ros::CameraInfo full = ros::camera_info_of({}, rig, {kSize.width * twice, kSize.height * twice}, side);
+      full.binning_x = full.binning_y = binning;
+      camera.add(camera.topic<ros::CameraInfo>(name + "camera_info"), {1000}, full);
+    }
+  };
+  record(2, 2);
+  EXPECT_EQ(open()->rig()->focal_px, kRig.focal_px);
+  EXPECT_EQ(open()->rig()->baseline_m, kRig.baseline_m);
+  record(2, 0);
+  EXPECT_NE(refusal().find("the images are " + text(kSize)), std::string::npos) << refusal();
+  SourceOptions scales;
+  scales.scale_calibration = true;
+  EXPECT_EQ(open(scales)->rig()->focal_px, kRig.focal_px);
+}
+
 TEST_F(McapSequence, PairsImagesByTheirStamps) {
   {
     CameraFile camera(file());

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "support/temporary_folder.hpp"
+
 namespace cairn::ros {
 namespace {
 
@@ -69,8 +71,29 @@ TEST(RosFromStep, TheRigIsRecoveredFromBothCameras) {
   EXPECT_EQ(again.cy_px, rig.cy_px);
   EXPECT_EQ(again.baseline_m, rig.baseline_m);
   EXPECT_EQ(again.doffs_px, rig.doffs_px);
-  EXPECT_THROW(rig_of(right, left), Error);  // a baseline below 0
+  EXPECT_TRUE(support::has(support::refusal([&] { (void)rig_of(right, left); }), {"exchanged"}));
   EXPECT_THROW(rig_of(CameraInfo{}, right), Error);
+}
+
+TEST(RosMessages, BinningAndRegionOfInterestAreAppliedToTheRig) {
+  const StereoRig rig{500, 320, 240, 0.12F, 4};
+  CameraInfo left = camera_info_of(kHeader, rig, {640, 480}, Side::left);
+  CameraInfo right = camera_info_of(kHeader, rig, {640, 480}, Side::right);
+  for (CameraInfo* info : {&left, &right}) {
+    info->binning_x = info->binning_y = 2;
+    info->roi = {40, 20, 400, 600, false};
+  }
+  EXPECT_EQ(image_size_of(left), (Size{300, 200}));
+  const StereoRig binned = rig_of(left, right, Size{300, 200});
+  EXPECT_FLOAT_EQ(binned.focal_px, 250);
+  EXPECT_FLOAT_EQ(binned.cx_px, 140);
+  EXPECT_FLOAT_EQ(binned.cy_px, 110);
+  EXPECT_FLOAT_EQ(binned.baseline_m, 0.12F);
+  EXPECT_FLOAT_EQ(binned.doffs_px, 2);
+  EXPECT_TRUE(support::has(support::refusal([&] {
+                             (void)rig_of(left, right, Size{640, 480});
+                           }),
+                           {"300x200", "640x480 as they come"}));
 }
 
 TEST(RosFromStep, DisparitiesGiveTheDepthThatTheRigGives) {
