@@ -203,7 +203,13 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   if (options.left.empty()) throw Error("LEFT: found an empty name, expected a file or a folder");
   std::error_code ignored;
   if (options.right.empty() && fs::is_directory(options.left, ignored)) {
-    auto frames = io::find_frames(options.left, options.cameras);
+    std::vector<fs::path> alone;
+    auto frames = io::find_frames(options.left, options.cameras, &alone);
+    if (!alone.empty()) {
+      std::cerr << "cairn: " << options.left << ": left image without a right one: " << alone.size()
+                << (alone.size() == 1 ? " frame" : " frames") << " skipped, the first is "
+                << on_one_line(alone.front().filename().string()) << "\n";
+    }
     options.disparity.empty() ? check_rights(frames) : check_maps(frames, options);
     return frames;
   }

@@ -184,19 +184,33 @@ std::optional<fs::path> calibration_among(const fs::path& folder, const fs::path
   return file(clean(folder).parent_path() / "calib_cam_to_cam.txt");
 }
 
-/// left01.jpg and right01.jpg.
-std::vector<FrameFiles> pairs_of_names(const fs::path& folder) {
-  const std::optional<fs::path> calib = calibration_of(folder);
-  return each_in(folder, [&](const fs::path& left) -> std::optional<FrameFiles> {
-    if (!is_picture(left)) return std::nullopt;
-    const std::optional<fs::path> right = partner(left);
-    if (!right || !is_file(*right)) return std::nullopt;
-    return FrameFiles{left.stem().string(), folder, left, *right, calib, *right};
-  });
+bool is_pair(const FrameFiles& frame) {
+  return frame.right.has_value();
 }
 
-/// left/01.jpg and right/01.jpg, image_left/01_left.png and image_right/01_right.png. Images without a counterpart are ignored if there are pairs.
-std::vector<FrameFiles> pairs_in(const fs::path& folder, const Folders& names) {
+/// The pairs; the left images of the others go to `alone`.
+std::vector<FrameFiles> pairs_among(std::vector<FrameFiles> all, std::vector<fs::path>& alone) {
+  for (const FrameFiles& frame : all) {
+    if (!is_pair(frame)) alone.push_back(frame.left);
+  }
+  std::erase_if(all, std::not_fn(is_pair));
+  return all;
+}
+
+/// left01.jpg and right01.jpg.
+std::vector<FrameFiles> pairs_of_names(const fs::path& folder, std::vector<fs::path>& alone) {
+  const std::optional<fs::path> calib = calibration_of(folder);
+  std::vector<FrameFiles> all = each_in(folder, [&](const fs::path& left) -> std::optional<FrameFiles> {
+    if (!is_picture(left)) return std::nullopt;
+    const std::optional<fs::path> right = partner(left);
+    if (!right) return std::nullopt;
+    return FrameFiles{left.stem().string(), folder, left, file(*right), calib, *right};
+  });
+  return pairs_among(std::move(all), alone);
+}
+
+/// left/01.jpg and right/01.jpg, image_left/01_left.png and image_right/01_right.png. Without any pair, the left images alone.
+std::vector<FrameFiles> pairs_in(const fs::path& folder, const Folders& names, std::vector<fs::path>& alone) {
   std::vector<FrameFiles> all =
       each_in(folder / names.left, [&](const fs::path& left) -> std::optional<FrameFiles> {
         if (!is_picture(left)) return std::nullopt;
@@ -207,15 +221,13 @@ std::vector<FrameFiles> pairs_in(const fs::path& folder, const Folders& names) {
             left.stem().string(), folder, left, file(right), calibration_among(folder, left), right,
             names.grey_cameras};
       });
-  const auto is_pair = [](const FrameFiles& frame) { return frame.right.has_value(); };
-  if (std::any_of(all.begin(), all.end(), is_pair)) std::erase_if(all, std::not_fn(is_pair));
-  return all;
+  return std::any_of(all.begin(), all.end(), is_pair) ? pairs_among(std::move(all), alone) : all;
 }
 
-std::vector<FrameFiles> pairs_by_name(const fs::path& folder, Cameras cameras) {
+std::vector<FrameFiles> pairs_by_name(const fs::path& folder, Cameras cameras, std::vector<fs::path>& alone) {
   for (const Folders& names : kFolders) {
     if (!is_folder(folder / names.left)) continue;
-    std::vector<FrameFiles> pairs = pairs_in(folder, names);
+    std::vector<FrameFiles> pairs = pairs_in(folder, names, alone);
     if (pairs.empty()) continue;
     if (names.cameras == Cameras::raw && cameras == Cameras::rectified) {
       const fs::path sensor = (folder / names.left).parent_path() / "sensor.yaml";
@@ -225,23 +237,24 @@ std::vector<FrameFiles> pairs_by_name(const fs::path& folder, Cameras cameras) {
     }
     return pairs;
   }
-  return pairs_of_names(folder);
+  return pairs_of_names(folder, alone);
 }
 
 /// Empty if there is none.
-std::vector<FrameFiles> frames_in(const fs::path& folder, Cameras cameras) {
+std::vector<FrameFiles> frames_in(const fs::path& folder, Cameras cameras, std::vector<fs::path>& alone) {
   if (std::optional<FrameFiles> frame = frame_in(folder)) return {*frame};
   std::vector<FrameFiles> frames = frames_below(folder);
-  return frames.empty() ? pairs_by_name(folder, cameras) : frames;
+  return frames.empty() ? pairs_by_name(folder, cameras, alone) : frames;
 }
 
 /// The subfolder with frames, as in several data sets.
 std::optional<fs::path> frames_deeper(const fs::path& folder) {
   std::optional<fs::path> first;
+  std::vector<fs::path> alone;
   std::error_code reason;
   for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
     if (is_folder(it->path()) && (!first || it->path() < *first) &&
-        !frames_in(it->path(), Cameras::raw).empty()) {
+        !frames_in(it->path(), Cameras::raw, alone).empty()) {
       first = it->path();
     }
   }
@@ -266,9 +279,10 @@ bool is_picture(const fs::path& path) {
              kPictureExtensions.end();
 }
 
-std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras) {
+std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras, std::vector<fs::path>* alone) {
   check_folder(folder);
-  std::vector<FrameFiles> frames = frames_in(folder, cameras);
+  std::vector<fs::path> ignored;
+  std::vector<FrameFiles> frames = frames_in(folder, cameras, alone != nullptr ? *alone : ignored);
   if (!frames.empty()) return frames;
   if (const std::optional<fs::path> deeper = frames_deeper(folder)) {
     throw Error(folder.string() + ": contains no left.png and no other frame, but " + deeper->string() +
@@ -282,7 +296,8 @@ std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras) {
 
 std::vector<FrameFiles> find_pairs(const fs::path& folder) {
   check_folder(folder);
-  std::vector<FrameFiles> pairs = pairs_by_name(folder, Cameras::raw);
+  std::vector<fs::path> alone;
+  std::vector<FrameFiles> pairs = pairs_by_name(folder, Cameras::raw, alone);
   return pairs.size() > 1 ? pairs : find_frames(folder, Cameras::raw);
 }
 

@@ -30,11 +30,11 @@ bool is_picture(const std::filesystem::path& path);
 /// The frames in a folder, sorted by name. A folder with a left image (left.png, .jpg, .jpeg, .pgm, .ppm,
 /// .pnm; Middlebury and ETH3D: im0, im2 or view1) is one frame; otherwise each of its
 /// sub-folders with one is, else each pair of files whose names differ only in left and right (left01.jpg,
-/// right01.jpg) or that have the same name in the sub-folders left/ and right/, or in KITTI's image_2/ and
-/// image_3/ and the like; EuRoC's cam0/data/ and cam1/data/ only if raw cameras are requested. Throws Error
-/// if there is none.
-std::vector<FrameFiles> find_frames(const std::filesystem::path& folder,
-                                    Cameras cameras = Cameras::rectified);
+/// right01.jpg; also Left and Right, _L and _R) or that have such names or the same one in the sub-folders left/ and
+/// right/, or in KITTI's image_2/ and image_3/, TartanAir's image_left/ and image_right/ and the like; EuRoC's cam0/data/ and cam1/data/ only if raw cameras are requested. `alone`:
+/// left images that have no right one, among pairs of files. Throws Error if there is no frame.
+std::vector<FrameFiles> find_frames(const std::filesystem::path& folder, Cameras cameras = Cameras::rectified,
+                                    std::vector<std::filesystem::path>* alone = nullptr);
 
 /// The pairs for a calibration: if two or more pairs differ only in their names, all of them, even if one is
 /// left.png. Throws Error if there is none.
