@@ -3,7 +3,6 @@
 #include "evaluation_text.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace cairn::cli {
@@ -20,10 +19,6 @@ std::string quoted(const std::string& text) {
 }
 
 }  // namespace
-
-Json json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 std::string csv(const std::vector<std::pair<std::string, Json>>& runs) {
   std::vector<std::string> names;

@@ -7,13 +7,9 @@
 #include <utility>
 #include <vector>
 
-/// Numbers of `cairn evaluate` as JSON and CSV.
 namespace cairn::cli {
 
-/// null for NaN and infinity, which JSON does not have.
-nlohmann::ordered_json json(double value);
-
-/// A header line of names, then one line per run (name, summary): the names are the paths in the summaries, with
+/// The --csv file of `cairn evaluate`: a header line of names, then one line per run (name, summary): the names are the paths in the summaries, with
 /// points. Missing values are empty.
 std::string csv(const std::vector<std::pair<std::string, nlohmann::ordered_json>>& runs);
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace cairn::timing {
+namespace cairn {
 
 /// The smallest value that at least `share` (0 … 1) of the values do not exceed; NaN without values. Ignores
 /// NaN.
@@ -19,6 +19,10 @@ inline double percentile(std::vector<double> values, double share) {
   const std::size_t index = std::clamp<std::size_t>(rank, 1, values.size()) - 1;
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
   return values[index];
+}
+
+inline double share(int part, int whole) {
+  return whole > 0 ? part / static_cast<double>(whole) : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Ignores NaN; NaN without values.
@@ -33,4 +37,4 @@ inline double mean(const std::vector<double>& values) {
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace cairn::timing
+}  // namespace cairn
