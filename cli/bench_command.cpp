@@ -22,6 +22,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -20,10 +20,10 @@
 #include <set>
 
 #include "commands.hpp"
-#include "common.hpp"
 #include "evaluate_files.hpp"
 #include "evaluate_sequence.hpp"
 #include "evaluation_text.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

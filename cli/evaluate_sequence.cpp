@@ -14,8 +14,8 @@
 #include <numbers>
 #include <set>
 
-#include "common.hpp"
 #include "evaluation_text.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {
