@@ -690,12 +690,8 @@ std::string frames_that_differ(const std::vector<Run>& runs) {
 }
 
 int compare(const EvaluateOptions& options) {
-  for (const auto& [requested, name] : {std::pair{options.json, "--json"}, {options.html, "--html"}}) {
-    if (requested) {
-      throw Error(std::string(name) + " " + *requested + ": needs one run, found " +
-                  std::to_string(options.results.size()) + "; --csv accepts several");
-    }
-  }
+  require_one_run("--json", options.json, options.results);
+  require_one_run("--html", options.html, options.results);
   std::vector<Run> runs;
   int code = 0;
   for (const std::string& folder : options.results) {

@@ -170,15 +170,12 @@ std::string lines_of(const SequenceScores& s) {
   }
   if (s.trajectory) all += trajectory_lines(*s.trajectory);
   if (s.is_cut_off) all += "cut off             the last line of tracks.jsonl, which is left out\n";
-  const auto frames = [](std::size_t count) {
-    return std::to_string(count) + (count == 1 ? " frame" : " frames");
-  };
   if (!s.without_result.empty()) {
-    all += "no result           " + frames(s.without_result.size()) + " of the truth, first " +
+    all += "no result           " + count_of(s.without_result.size(), "frame") + " of the truth, first " +
            s.without_result.front() + "\n";
   }
   if (!s.without_truth.empty()) {
-    all += "no truth            " + frames(s.without_truth.size()) + " of the result, first " +
+    all += "no truth            " + count_of(s.without_truth.size(), "frame") + " of the result, first " +
            s.without_truth.front() + "\n";
   }
   return all;
@@ -202,10 +199,7 @@ std::string run_table(const std::vector<SequenceScores>& runs) {
 }  // namespace
 
 int evaluate_sequence(const EvaluateSequenceOptions& options) {
-  if (options.json && options.results.size() > 1) {
-    throw Error("--json " + *options.json + ": needs one run, found " +
-                std::to_string(options.results.size()) + "; --csv accepts several");
-  }
+  require_one_run("--json", options.json, options.results);
   const input::TrueSequence truth = input::load_truth(options.truth);
   std::vector<SequenceScores> runs;
   for (const std::string& result : options.results)
@@ -230,10 +224,7 @@ int evaluate_sequence(const EvaluateSequenceOptions& options) {
 }
 
 int evaluate_trajectory(const EvaluateSequenceOptions& options) {
-  if (options.json && options.results.size() > 1) {
-    throw Error("--json " + *options.json + ": needs one run, found " +
-                std::to_string(options.results.size()) + "; --csv accepts several");
-  }
+  require_one_run("--json", options.json, options.results);
   const output::Trajectory truth = output::load_trajectory(options.truth);
   std::vector<std::pair<std::string, Json>> summaries;
   std::string text;

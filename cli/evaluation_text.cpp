@@ -3,6 +3,7 @@
 #include "evaluation_text.hpp"
 
 #include <algorithm>
+#include <cairn/core/error.hpp>
 #include <map>
 
 namespace cairn::cli {
@@ -19,6 +20,13 @@ std::string quoted(const std::string& text) {
 }
 
 }  // namespace
+
+void require_one_run(const char* option, const std::optional<std::string>& file,
+                     const std::vector<std::string>& runs) {
+  if (!file || runs.size() < 2) return;
+  throw Error(std::string(option) + " " + *file + ": needs one run, found " + std::to_string(runs.size()) +
+              "; --csv accepts several");
+}
 
 std::string csv(const std::vector<std::pair<std::string, Json>>& runs) {
   std::vector<std::string> names;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -21,7 +22,8 @@ inline double percentile(std::vector<double> values, double share) {
   return values[index];
 }
 
-inline double share(int part, int whole) {
+/// NaN without a whole.
+inline double share(double part, std::int64_t whole) {
   return whole > 0 ? part / static_cast<double>(whole) : std::numeric_limits<double>::quiet_NaN();
 }
 
