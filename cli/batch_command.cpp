@@ -14,6 +14,7 @@
 #include "batch_frames.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/core/statistics.hpp>
 #include <cairn/core/target.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cairn/io/atomic_file.hpp>
@@ -13,7 +14,6 @@
 #include <cairn/timing/frame_times.hpp>
 #include <cairn/timing/machine.hpp>
 #include <cairn/timing/opencv_matchers.hpp>
-#include <cairn/timing/statistics.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -22,6 +22,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -169,11 +170,11 @@ struct Quantiles {
 };
 
 Quantiles quantiles(const std::vector<double>& values) {
-  return {timing::percentile(values, 0), timing::percentile(values, 0.5), timing::percentile(values, 0.99)};
+  return {percentile(values, 0), percentile(values, 0.5), percentile(values, 0.99)};
 }
 
 double median_wall(const Samples& samples) {
-  return timing::percentile(samples.wall_ms, 0.5);
+  return percentile(samples.wall_ms, 0.5);
 }
 
 struct Accuracy {

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -13,6 +13,7 @@
 #include "common.hpp"
 #include "keep_inputs.hpp"
 #include "refusals.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

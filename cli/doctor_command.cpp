@@ -14,6 +14,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "findings.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -20,17 +20,16 @@
 #include <set>
 
 #include "commands.hpp"
-#include "common.hpp"
 #include "evaluate_files.hpp"
 #include "evaluate_sequence.hpp"
 #include "evaluation_text.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using cli::json;  // next to the overloads below
-using output::Json;
+using output::finite, output::Json;
 
 struct EvaluateOptions {
   std::vector<std::string> folders;  // as given: results, then truth
@@ -432,27 +431,27 @@ Json json_if(bool known, int value) {
   return known ? Json(value) : Json(nullptr);
 }
 
-Json json(const TrueObjectScore& score) {
+Json json_of(const TrueObjectScore& score) {
   return {{"id", number(score.id)},
           {"area_px", score.pixel_count},
           {"ours", json_if(score.found != ObjectId::none, number(score.found))},
-          {"iou", json(score.iou)},
-          {"error", json(score.error())},
-          {"boundary_f", json(score.boundary_f)},
+          {"iou", finite(score.iou)},
+          {"error", finite(score.error())},
+          {"boundary_f", finite(score.boundary_f)},
           {"over_segmented", score.over_segmented},
           {"under_segmented", score.under_segmented}};
 }
 
-Json json(const FoundObjectScore& score, const std::map<ObjectId, double>& confidence) {
+Json json_of(const FoundObjectScore& score, const std::map<ObjectId, double>& confidence) {
   const auto known = confidence.find(score.id);
   return {{"id", number(score.id)},
           {"area_px", score.pixel_count},
           {"true", json_if(score.best != TruthId::none, number(score.best))},
-          {"iou", json(score.iou)},
-          {"share_on_objects", json(score.share_on_objects)},
+          {"iou", finite(score.iou)},
+          {"share_on_objects", finite(score.share_on_objects)},
           {"mostly_dont_care", score.mostly_dont_care},
           {"phantom", score.phantom},
-          {"confidence", known == confidence.end() ? Json(nullptr) : json(known->second)}};
+          {"confidence", known == confidence.end() ? Json(nullptr) : finite(known->second)}};
 }
 
 Json frame_objects_json(const FrameScore& frame) {
@@ -470,43 +469,43 @@ Json frame_objects_json(const FrameScore& frame) {
                  {"right_75", json_if(!partial, sum.right_75)},
                  {"phantoms", json_if(!partial, sum.phantoms)}};
   j["true"] = Json::array();
-  for (const TrueObjectScore& score : errors.truth) j["true"].push_back(json(score));
+  for (const TrueObjectScore& score : errors.truth) j["true"].push_back(json_of(score));
   j["ours"] = Json::array();
-  for (const FoundObjectScore& score : errors.ours) j["ours"].push_back(json(score, frame.confidence));
+  for (const FoundObjectScore& score : errors.ours) j["ours"].push_back(json_of(score, frame.confidence));
   return j;
 }
 
-Json json(const DisparityErrors& errors) {
-  Json j{{"known_px", errors.known}, {"matched_px", errors.matched}, {"density", json(errors.density())}};
+Json json_of(const DisparityErrors& errors) {
+  Json j{{"known_px", errors.known}, {"matched_px", errors.matched}, {"density", finite(errors.density())}};
   for (std::size_t t = 0; t < kBadThresholdsPx.size(); ++t) {
     const std::string threshold = text_of("%g", double(kBadThresholdsPx[t]));
-    j["bad_of_matched"][threshold] = json(errors.bad_of_matched(t));
-    j["bad_of_known"][threshold] = json(errors.bad_of_known(t));
+    j["bad_of_matched"][threshold] = finite(errors.bad_of_matched(t));
+    j["bad_of_known"][threshold] = finite(errors.bad_of_known(t));
   }
-  j["mean_absolute_px"] = json(errors.mean_absolute_px());
-  j["root_mean_square_px"] = json(errors.root_mean_square_px());
-  j["sigma_px"] = json(errors.sigma_px());
+  j["mean_absolute_px"] = finite(errors.mean_absolute_px());
+  j["root_mean_square_px"] = finite(errors.root_mean_square_px());
+  j["sigma_px"] = finite(errors.sigma_px());
   return j;
 }
 
-Json json(const ConfidentPixels& pixels) {
+Json json_of(const ConfidentPixels& pixels) {
   const double right = static_cast<double>(pixels.right) / static_cast<double>(pixels.confident);
   return {{"at_least", kConfident},
           {"matched_px", pixels.matched},
           {"confident_px", pixels.confident},
           {"right_1_px", pixels.right},
-          {"share_right_1", json(right)}};
+          {"share_right_1", finite(right)}};
 }
 
 Json frame_disparity_json(const FrameScore& frame) {
   if (!frame.all) return nullptr;
-  return {{"both_cameras", frame.knows_occlusion ? json(*frame.visible) : Json(nullptr)},
-          {"all", json(*frame.all)}};
+  return {{"both_cameras", frame.knows_occlusion ? json_of(*frame.visible) : Json(nullptr)},
+          {"all", json_of(*frame.all)}};
 }
 
 Json frame_json(const FrameScore& frame) {
   Json times = nullptr;
-  for (const output::StageTime& time : frame.times) times[time.stage] = json(time.milliseconds);
+  for (const output::StageTime& time : frame.times) times[time.stage] = finite(time.milliseconds);
   return {{"name", frame.name},
           {"objects", frame_objects_json(frame)},
           {"disparity", frame_disparity_json(frame)},
@@ -523,29 +522,31 @@ Json summary_objects_json(const std::vector<FrameScore>& frames) {
          {"scored", s.true_objects},
          {"found_50", s.found_50},
          {"found_75", s.found_75},
-         {"recall_50", json(s.recall_50())},
-         {"recall_75", json(s.recall_75())},
+         {"recall_50", finite(s.recall_50())},
+         {"recall_75", finite(s.recall_75())},
          {"ours", json_if(complete, s.our_objects)},
          {"right_50", json_if(complete, s.right_50)},
          {"right_75", json_if(complete, s.right_75)},
-         {"precision_50", json(s.precision_50())},
-         {"precision_75", json(s.precision_75())},
+         {"precision_50", finite(s.precision_50())},
+         {"precision_75", finite(s.precision_75())},
          {"phantoms", json_if(complete, s.phantoms)},
-         {"phantoms_per_frame", json(s.phantoms_per_frame())},
-         {"mean_error", json(s.mean_error)},
-         {"median_error", json(s.median_error)},
+         {"phantoms_per_frame", finite(s.phantoms_per_frame())},
+         {"mean_error", finite(s.mean_error)},
+         {"median_error", finite(s.median_error)},
          {"error_cap", kErrorCap},
          {"at_error_cap", s.missed},
-         {"mean_iou", json(s.mean_iou)},
-         {"mean_boundary_f", json(s.mean_boundary_f)},
-         {"mean_boundary_f_found", json(s.mean_boundary_f_found)},
+         {"mean_iou", finite(s.mean_iou)},
+         {"mean_boundary_f", finite(s.mean_boundary_f)},
+         {"mean_boundary_f_found", finite(s.mean_boundary_f_found)},
          {"over_segmented", s.over_segmented},
          {"under_segmented", s.under_segmented},
          {"confident", nullptr}};
   if (const Confidence c = judge_confidence(frames); c.known) {
     const double right = c.objects > 0 ? c.right / static_cast<double>(c.objects) : std::nan("");
-    j["confident"] = {
-        {"at_least", kConfident}, {"ours", c.objects}, {"right_50", c.right}, {"precision_50", json(right)}};
+    j["confident"] = {{"at_least", kConfident},
+                      {"ours", c.objects},
+                      {"right_50", c.right},
+                      {"precision_50", finite(right)}};
   }
   return j;
 }
@@ -555,14 +556,14 @@ Json summary_disparity_json(const std::vector<FrameScore>& frames) {
   if (sum.frames == 0) return nullptr;
   return {{"frames", sum.frames},
           {"frames_with_occlusion", sum.with_occlusion},
-          {"both_cameras", sum.with_occlusion > 0 ? json(sum.visible) : Json(nullptr)},
-          {"all", json(sum.all)},
-          {"confident", sum.confident.matched > 0 ? json(sum.confident) : Json(nullptr)}};
+          {"both_cameras", sum.with_occlusion > 0 ? json_of(sum.visible) : Json(nullptr)},
+          {"all", json_of(sum.all)},
+          {"confident", sum.confident.matched > 0 ? json_of(sum.confident) : Json(nullptr)}};
 }
 
 Json mean_and_median(const std::vector<double>& values) {
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  return {{"mean", json(mean)}, {"median", json(median(values))}};
+  return {{"mean", finite(mean)}, {"median", finite(median(values))}};
 }
 
 Json summary_times_json(const std::vector<FrameScore>& frames) {
@@ -689,12 +690,8 @@ std::string frames_that_differ(const std::vector<Run>& runs) {
 }
 
 int compare(const EvaluateOptions& options) {
-  for (const auto& [requested, name] : {std::pair{options.json, "--json"}, {options.html, "--html"}}) {
-    if (requested) {
-      throw Error(std::string(name) + " " + *requested + ": needs one run, found " +
-                  std::to_string(options.results.size()) + "; --csv accepts several");
-    }
-  }
+  require_one_run("--json", options.json, options.results);
+  require_one_run("--html", options.html, options.results);
   std::vector<Run> runs;
   int code = 0;
   for (const std::string& folder : options.results) {

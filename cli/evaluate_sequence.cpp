@@ -4,31 +4,26 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/core/statistics.hpp>
+#include <cairn/input/sequence_scores_json.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/output/trajectory_files.hpp>
-#include <cairn/timing/statistics.hpp>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 
-#include "common.hpp"
 #include "evaluation_text.hpp"
-#include "sequence_scores.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using cli::json;  // next to the overloads below
+using input::PlaceErrors, input::MovingErrors, input::SequenceScores;
+using output::Json;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-
-double share(int part, int whole) {
-  return whole > 0 ? part / static_cast<double>(whole) : std::nan("");
-}
 
 std::string points(double value) {
   return text_of("%.1f", 100 * value);
@@ -40,117 +35,16 @@ std::string metres(double value) {
 
 // ---- JSON ----
 
-Json json(const TrackErrors& e) {
-  return {{"HOTA", e.hota},         {"DetA", e.det_a},     {"DetRe", e.det_re},   {"DetPr", e.det_pr},
-          {"AssA", e.ass_a},        {"AssRe", e.ass_re},   {"AssPr", e.ass_pr},   {"LocA", e.loc_a},
-          {"MOTA", e.mota},         {"MOTP", e.motp},      {"CLR_TP", e.right},   {"CLR_FN", e.missed},
-          {"CLR_FP", e.wrong},      {"IDSW", e.switches},  {"Frag", e.fragments}, {"MT", e.mostly_tracked},
-          {"PT", e.partly_tracked}, {"ML", e.mostly_lost}, {"IDF1", e.id_f1},     {"IDP", e.id_precision},
-          {"IDR", e.id_recall},     {"IDTP", e.id_right},  {"IDFN", e.id_missed}, {"IDFP", e.id_wrong}};
-}
-
-Json places_json(const std::vector<double>& errors_m) {
-  return {{"compared", errors_m.size()},
-          {"median_m", json(timing::percentile(errors_m, 0.5))},
-          {"p95_m", json(timing::percentile(errors_m, 0.95))}};
-}
-
-Json json(const TrajectoryError& e) {
-  return {{"compared", e.compared},
-          {"missing", e.missing},
-          {"path_m", e.path_m},
-          {"ate_rmse_m", json(e.ate_rmse_m)},
-          {"ate_max_m", json(e.ate_max_m)},
-          {"rpe_frame_m", json(e.rpe_frame_m)},
-          {"rpe_frame_deg", json(kDegrees * e.rpe_frame_rad)},
-          {"rpe_metre_m", json(e.rpe_metre_m)},
-          {"rpe_metre_deg", json(kDegrees * e.rpe_metre_rad)},
-          {"sub_paths", e.sub_paths},
-          {"t_rel", json(e.t_rel)},
-          {"r_rel_deg_per_m", json(kDegrees * e.r_rel_rad_per_m)},
-          {"end_error_m", json(e.end_error_m)},
-          {"end_error_deg", json(kDegrees * e.end_error_rad)},
-          {"end_drift", json(e.end_drift)}};
-}
-
-Json moving_json(const MovingErrors& e) {
-  if (!e.is_known) return nullptr;
-  Json detected = Json::object();
-  for (const auto& [id, frames] : e.frames_to_detect)
-    detected[std::to_string(id)] = frames ? Json(*frames) : Json(nullptr);
-  return {{"frames_to_detect", detected},         {"moving", e.moving},
-          {"moving_labelled", e.labelled},        {"at_rest", e.at_rest},
-          {"at_rest_labelled", e.labelled_wrong}, {"false_share", json(share(e.labelled_wrong, e.at_rest))}};
-}
-
-Json landmarks_json(const LandmarkErrors& e) {
-  if (!e.is_known) return nullptr;
-  return {{"in_view_again", e.again},
-          {"re_identified", e.re_identified},
-          {"wrong", e.wrong},
-          {"repeatability", json(share(e.re_identified, e.again))},
-          {"false_share", json(share(e.wrong, e.re_identified + e.wrong))}};
-}
-
-Json changes_json(const ChangeErrors& e) {
-  if (!e.is_known) return nullptr;
-  return {{"expected", e.expected},
-          {"found", e.found},
-          {"reported", e.reported},
-          {"wrong", e.wrong},
-          {"precision", json(share(e.reported - e.wrong, e.reported))},
-          {"recall", json(share(e.found, e.expected))},
-          {"median_error_m", json(timing::percentile(e.errors_m, 0.5))}};
-}
-
-Json summary_json(const SequenceScores& s) {
-  const ObjectSummary& o = s.objects;
-  return {{"frames", s.frames},
-          {"tracks", json(s.tracks)},
-          {"by_landmark", s.by_landmark ? json(*s.by_landmark) : Json(nullptr)},
-          {"oracle_ids", json(s.oracle)},
-          {"objects",
-           {{"scored", o.true_objects},
-            {"found_50", o.found_50},
-            {"found_75", o.found_75},
-            {"recall_50", json(o.recall_50())},
-            {"recall_75", json(o.recall_75())},
-            {"ours", o.our_objects},
-            {"precision_50", json(o.precision_50())},
-            {"precision_75", json(o.precision_75())},
-            {"phantoms_per_frame", json(o.phantoms_per_frame())},
-            {"mean_error", json(o.mean_error)},
-            {"median_error", json(o.median_error)},
-            {"mean_boundary_f", json(o.mean_boundary_f)}}},
-          {"steadiness",
-           {{"object_frames", s.steadiness.object_frames},
-            {"found_again", s.steadiness.found_again},
-            {"found_again_per_100", json(100 * share(s.steadiness.found_again, s.steadiness.object_frames))},
-            {"mean_iou_difference", json(s.steadiness.iou_difference)}}},
-          {"positions",
-           {{"in_map", places_json(s.places.in_map_m)},
-            {"in_camera", places_json(s.places.in_camera_m)},
-            {"with_covariance", s.places.stated},
-            {"inside_95", json(share(s.places.inside, s.places.stated))},
-            {"median_nees", json(timing::percentile(s.places.normalised, 0.5))}}},
-          {"moving", moving_json(s.moving)},
-          {"landmarks", landmarks_json(s.landmarks)},
-          {"changes", changes_json(s.changes)},
-          {"trajectory", s.trajectory ? json(*s.trajectory) : Json(nullptr)}};
-}
-
-std::string dumped(const Json& json) {
-  // A folder name that is not UTF-8 is not an error.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 std::string whole_json(const SequenceScores& s, const EvaluateSequenceOptions& options) {
-  return dumped({{"cairn", CAIRN_VERSION},
-                 {"options", {{"min_area_px", options.min_area}, {"tentative", options.tentative}}},
-                 {"summary", summary_json(s)},
-                 {"cut_off", s.is_cut_off},
-                 {"without_result", s.without_result},
-                 {"without_truth", s.without_truth}});
+  return output::json_text(
+             {{"cairn", CAIRN_VERSION},
+              {"options", {{"min_area_px", options.min_area}, {"tentative", options.tentative}}},
+              {"summary", json_of(s)},
+              {"cut_off", s.is_cut_off},
+              {"without_result", s.without_result},
+              {"without_truth", s.without_truth}},
+             1) +
+         "\n";
 }
 
 /// The frames to detection are left out, since their names, those of the objects, differ between truths.
@@ -197,17 +91,17 @@ std::string place_lines(const PlaceErrors& places) {
     return "positions           not compared: no place in the truth, or no match\n";
   std::string all;
   if (!places.in_map_m.empty()) {
-    all += "positions           in the map: median " + metres(timing::percentile(places.in_map_m, 0.5)) +
-           "   95 % below " + metres(timing::percentile(places.in_map_m, 0.95)) + "   of " +
+    all += "positions           in the map: median " + metres(percentile(places.in_map_m, 0.5)) +
+           "   95 % below " + metres(percentile(places.in_map_m, 0.95)) + "   of " +
            std::to_string(places.in_map_m.size()) + "\n";
   }
   all += std::string(all.empty() ? "positions           " : "                    ") +
-         "from the camera: median " + metres(timing::percentile(places.in_camera_m, 0.5)) + "   95 % below " +
-         metres(timing::percentile(places.in_camera_m, 0.95)) + "\n";
+         "from the camera: median " + metres(percentile(places.in_camera_m, 0.5)) + "   95 % below " +
+         metres(percentile(places.in_camera_m, 0.95)) + "\n";
   if (places.stated > 0) {
     all += "                    within the stated 95 % ellipsoid: " +
            percent(share(places.inside, places.stated)) + "   NEES: median " +
-           text_of("%.2f", timing::percentile(places.normalised, 0.5)) + " (2.37 if correct)\n";
+           text_of("%.2f", percentile(places.normalised, 0.5)) + " (2.37 if correct)\n";
   }
   return all;
 }
@@ -271,20 +165,17 @@ std::string lines_of(const SequenceScores& s) {
            std::to_string(s.changes.expected) + "   wrong: " + std::to_string(s.changes.wrong) + " of " +
            std::to_string(s.changes.reported) + " reported";
     if (!s.changes.errors_m.empty())
-      all += "   displacement error " + metres(timing::percentile(s.changes.errors_m, 0.5));
+      all += "   displacement error " + metres(percentile(s.changes.errors_m, 0.5));
     all += "\n";
   }
   if (s.trajectory) all += trajectory_lines(*s.trajectory);
   if (s.is_cut_off) all += "cut off             the last line of tracks.jsonl, which is left out\n";
-  const auto frames = [](std::size_t count) {
-    return std::to_string(count) + (count == 1 ? " frame" : " frames");
-  };
   if (!s.without_result.empty()) {
-    all += "no result           " + frames(s.without_result.size()) + " of the truth, first " +
+    all += "no result           " + count_of(s.without_result.size(), "frame") + " of the truth, first " +
            s.without_result.front() + "\n";
   }
   if (!s.without_truth.empty()) {
-    all += "no truth            " + frames(s.without_truth.size()) + " of the result, first " +
+    all += "no truth            " + count_of(s.without_truth.size(), "frame") + " of the result, first " +
            s.without_truth.front() + "\n";
   }
   return all;
@@ -298,8 +189,8 @@ std::string run_table(const std::vector<SequenceScores>& runs) {
                points(s.tracks.ass_a), points(s.tracks.id_f1), std::to_string(s.tracks.switches),
                points(s.objects.recall_50()), points(s.objects.recall_75()), points(s.objects.precision_50()),
                points(s.objects.mean_error), std::to_string(s.steadiness.found_again),
-               text_of("%.3f", timing::percentile(s.places.in_map_m, 0.5)),
-               text_of("%.3f", timing::percentile(s.places.in_map_m, 0.95)),
+               text_of("%.3f", percentile(s.places.in_map_m, 0.5)),
+               text_of("%.3f", percentile(s.places.in_map_m, 0.95)),
                s.trajectory ? text_of("%.2f", 100 * s.trajectory->end_drift) : ""});
   }
   return table.text();
@@ -308,19 +199,16 @@ std::string run_table(const std::vector<SequenceScores>& runs) {
 }  // namespace
 
 int evaluate_sequence(const EvaluateSequenceOptions& options) {
-  if (options.json && options.results.size() > 1) {
-    throw Error("--json " + *options.json + ": needs one run, found " +
-                std::to_string(options.results.size()) + "; --csv accepts several");
-  }
+  require_one_run("--json", options.json, options.results);
   const input::TrueSequence truth = input::load_truth(options.truth);
   std::vector<SequenceScores> runs;
   for (const std::string& result : options.results)
-    runs.push_back(score_sequence(result, truth, {options.min_area, options.tentative}));
+    runs.push_back(input::score_sequence(result, truth, {options.min_area, options.tentative}));
   if (options.json) io::write_file(*options.json, whole_json(runs.front(), options));
   if (options.csv) {
     std::vector<std::pair<std::string, Json>> summaries;
     summaries.reserve(runs.size());
-    for (const SequenceScores& run : runs) summaries.emplace_back(run.name, summary_json(run));
+    for (const SequenceScores& run : runs) summaries.emplace_back(run.name, input::json_of(run));
     io::write_file(*options.csv, csv_of(summaries));
   }
   if (runs.size() == 1) {
@@ -336,10 +224,7 @@ int evaluate_sequence(const EvaluateSequenceOptions& options) {
 }
 
 int evaluate_trajectory(const EvaluateSequenceOptions& options) {
-  if (options.json && options.results.size() > 1) {
-    throw Error("--json " + *options.json + ": needs one run, found " +
-                std::to_string(options.results.size()) + "; --csv accepts several");
-  }
+  require_one_run("--json", options.json, options.results);
   const output::Trajectory truth = output::load_trajectory(options.truth);
   std::vector<std::pair<std::string, Json>> summaries;
   std::string text;
@@ -365,10 +250,12 @@ int evaluate_trajectory(const EvaluateSequenceOptions& options) {
     }
     if (options.results.size() > 1) text += result + "\n";
     text += trajectory_lines(error);
-    summaries.emplace_back(result, Json{{"trajectory", json(error)}});
+    summaries.emplace_back(result, Json{{"trajectory", input::json_of(error)}});
   }
   if (options.json)
-    io::write_file(*options.json, dumped({{"cairn", CAIRN_VERSION}, {"summary", summaries.front().second}}));
+    io::write_file(
+        *options.json,
+        output::json_text({{"cairn", CAIRN_VERSION}, {"summary", summaries.front().second}}, 1) + "\n");
   if (options.csv) io::write_file(*options.csv, csv_of(summaries));
   std::cout << text;
   return 0;

@@ -3,7 +3,7 @@
 #include "evaluation_text.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cairn/core/error.hpp>
 #include <map>
 
 namespace cairn::cli {
@@ -21,8 +21,11 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-Json json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
+void require_one_run(const char* option, const std::optional<std::string>& file,
+                     const std::vector<std::string>& runs) {
+  if (!file || runs.size() < 2) return;
+  throw Error(std::string(option) + " " + *file + ": needs one run, found " + std::to_string(runs.size()) +
+              "; --csv accepts several");
 }
 
 std::string csv(const std::vector<std::pair<std::string, Json>>& runs) {

@@ -3,18 +3,19 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-/// Numbers of `cairn evaluate` as JSON and CSV.
 namespace cairn::cli {
 
-/// null for NaN and infinity, which JSON does not have.
-nlohmann::ordered_json json(double value);
+/// Throws Error if the option is given with several runs.
+void require_one_run(const char* option, const std::optional<std::string>& file,
+                     const std::vector<std::string>& runs);
 
-/// A header line of names, then one line per run (name, summary): the names are the paths in the summaries, with
-/// points. Missing values are empty.
+/// The --csv file of `cairn evaluate`: a header line of names, then one line per run (name, summary): the
+/// names are the paths in the summaries, with points. Missing values are empty.
 std::string csv(const std::vector<std::pair<std::string, nlohmann::ordered_json>>& runs);
 
 }  // namespace cairn::cli

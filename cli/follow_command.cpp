@@ -9,6 +9,7 @@
 #include "common.hpp"
 #include "interrupt.hpp"
 #include "run_sinks.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "source_options.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -36,9 +36,9 @@ int run_other(int argc, const char* const* argv) {
 #else
 int run_other(int argc, const char* const* argv) {
   try {
-    void* entry = io::module_entry({"cairn-commands.so", kCommandsEntry, "it needs",
-                                    "its module and the libraries of that", "reinstall cairn"},
-                                   std::string("cairn ") + argv[1]);
+    constexpr io::Part kCommands{"cairn-commands.so", "it needs", "its module and the libraries of that",
+                                 "reinstall cairn"};
+    void* entry = io::module_entry(kCommands, kCommandsEntry, std::string("cairn ") + argv[1]);
     return reinterpret_cast<CommandsEntry>(entry)(argc, argv);
   } catch (const Error& error) {
     std::cerr << "cairn: " << error.what() << '\n';

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "map_work.hpp"
 
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/sequence/map_exports.hpp>
@@ -10,7 +11,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "common.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -2,14 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "app.hpp"
 
-extern "C" {
-
-__attribute__((visibility("default"))) const char* cairn_module_version() {
-  return CAIRN_VERSION;
-}
-
-__attribute__((visibility("default"))) int cairn_run_command(int argc, const char* const* argv) {
+extern "C" __attribute__((visibility("default"))) int cairn_run_command(int argc, const char* const* argv) {
   return cairn::cli::run(argc, argv, cairn::cli::declare_any);
 }
-
-}  // extern "C"

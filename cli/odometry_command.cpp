@@ -17,6 +17,7 @@
 #include "follow_options.hpp"
 #include "interrupt.hpp"
 #include "source_options.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

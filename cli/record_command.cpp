@@ -11,8 +11,8 @@
 #include <system_error>
 
 #include "commands.hpp"
-#include "common.hpp"
 #include "source_options.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "keep_inputs.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

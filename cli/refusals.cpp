@@ -7,7 +7,7 @@
 #include <cairn/stereo/texture.hpp>
 #include <cmath>
 
-#include "common.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

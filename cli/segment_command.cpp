@@ -20,6 +20,7 @@
 #include "common.hpp"
 #include "findings.hpp"
 #include "refusals.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -19,6 +19,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "interrupt.hpp"
+#include "terminal.hpp"
 #include "tune_sequence.hpp"
 #include "tuning_frames.hpp"
 

@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "source_options.hpp"
+#include "terminal.hpp"
 
 namespace cairn::cli {
 namespace {

@@ -19,7 +19,7 @@ endfunction()
 # All other headers are private: they may change or disappear in any version.
 set(private_headers
   core/disjoint_sets core/each_index core/highway_targets stereo/label_kernels_plain core/nearest core/stage_clock
-  core/pool_memory core/random core/scratch
+  core/pool_memory core/random core/scratch core/statistics
   image/gaussian image/local_contrast image/prefilter image/sparse_points image/texture
   stereo/byte_lanes_plain stereo/islands stereo/lanes_plain stereo/memory
   scene/floor_search scene/plane_fit scene/plane_through_pairs
@@ -29,7 +29,7 @@ set(private_headers
   sequence/assign sequence/changes sequence/kalman sequence/landmark_geometry sequence/motion_fit sequence/twist
   io/calibration_forms io/frame_names io/load_module io/raster io/read_file io/sha256 io/yaml_text
   input/frame_list input/frame_watch input/mcap_sequence input/mcap_topics io/names_and_numbers
-  input/open_ros2 input/open_video input/ros_pictures sequence/stamp_pairing io/text_lines
+  input/open_parts input/ros_pictures input/sequence_scores_json sequence/stamp_pairing io/text_lines
   live/topics output/drawing output/json output/json_line web/html_template web/live_page web/page_parts ros/mcap_format
   view/access view/channels view/client view/frame_json view/parameters
   [a-z]+/[a-z_]+_kernels)

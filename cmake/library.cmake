@@ -26,7 +26,11 @@ endfunction()
 
 # cairn_module(TARGET NAME LIBRARIES SOURCES...): a module loaded on first use by cairn/io/load_module.cpp.
 function(cairn_module target name libraries)
-  add_library(${target} MODULE ${ARGN})
+  # Refuses modules of other builds.
+  set(version ${CMAKE_CURRENT_BINARY_DIR}/module_version.cpp)
+  file(CONFIGURE OUTPUT ${version} CONTENT
+    "extern \"C\" __attribute__((visibility(\"default\"))) const char* cairn_module_version() { return \"@PROJECT_VERSION@\"; }\n")
+  add_library(${target} MODULE ${ARGN} ${version})
   target_link_libraries(${target} PRIVATE cairn_options ${libraries})
   target_compile_definitions(${target} PRIVATE CAIRN_VERSION="${PROJECT_VERSION}")
   target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)

@@ -294,10 +294,10 @@ std::string accuracy_section(const std::filesystem::path& data, const std::vecto
   }
   MarkdownTable table(
       {"mean of " + std::to_string(ours_bad.size()) + " pairs", "bad-2 of matched, %", "density, %"});
-  table.add({"SAD complete, true left-right, 15x15, xsobel with cap 9",
-             text_of("%.2f", 100 * timing::mean(ours_bad)), percent(timing::mean(ours_density))});
+  table.add({"SAD complete, true left-right, 15x15, xsobel with cap 9", text_of("%.2f", 100 * mean(ours_bad)),
+             percent(mean(ours_density))});
   table.add({"StereoBM, 15x15, its defaults, uniqueness 15, texture 10, left-right 1",
-             text_of("%.2f", 100 * timing::mean(theirs_bad)), percent(timing::mean(theirs_density))});
+             text_of("%.2f", 100 * mean(theirs_bad)), percent(mean(theirs_density))});
   return table.text();
 }
 
@@ -316,7 +316,7 @@ Run copying(const Scene& scene) {
 std::string steadiness_section(const std::filesystem::path&, const std::vector<Scene>& scenes) {
   constexpr int kFrames = 500;
   const auto spread = [](const std::vector<double>& times) {
-    return timing::percentile(times, 0.99) / median(times);
+    return percentile(times, 0.99) / median(times);
   };
   MarkdownTable table({"on", "median ms", "p99 ms", "p99 / median", "goal", "met",
                        "p99 / median of StereoBM full, interleaved", "p99 / median of memcpy"});
@@ -330,7 +330,7 @@ std::string steadiness_section(const std::filesystem::path&, const std::vector<S
     }
     const double ratio = spread(times[0]);
     table.add({scene.name + " " + scene.extent(), text_of("%.2f", median(times[0])),
-               text_of("%.2f", timing::percentile(times[0], 0.99)), text_of("%.2f", ratio), "≤ 1.20",
+               text_of("%.2f", percentile(times[0], 0.99)), text_of("%.2f", ratio), "≤ 1.20",
                ratio <= 1.2 ? "yes" : "**no**", text_of("%.2f", spread(times[1])),
                text_of("%.2f", spread(times[2]))});
   }

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include <cairn/timing/statistics.hpp>
+#include <cairn/core/statistics.hpp>
 
 /// Frames with ground truth in memory, and the scores of a configuration on them.
 namespace cairn::lab {

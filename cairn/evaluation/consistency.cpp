@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/core/statistics.hpp>
 #include <cairn/evaluation/consistency.hpp>
 #include <cairn/stereo/match.hpp>
 #include <cassert>
@@ -10,10 +11,6 @@
 
 namespace cairn {
 namespace {
-
-double share(double part, std::int64_t whole) {
-  return whole > 0 ? part / static_cast<double>(whole) : std::numeric_limits<double>::quiet_NaN();
-}
 
 struct Moments {
   double mean = 0;

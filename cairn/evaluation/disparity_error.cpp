@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/core/statistics.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cassert>
 #include <cmath>
@@ -11,10 +12,6 @@ namespace {
 
 constexpr std::size_t kWithinOnePx = 1;
 static_assert(kBadThresholdsPx[kWithinOnePx] == 1);
-
-double ratio(double part, std::int64_t whole) {
-  return whole > 0 ? part / static_cast<double>(whole) : std::numeric_limits<double>::quiet_NaN();
-}
 
 }  // namespace
 
@@ -29,22 +26,22 @@ DisparityErrors& DisparityErrors::operator+=(const DisparityErrors& other) {
 }
 
 double DisparityErrors::density() const {
-  return ratio(static_cast<double>(matched), known);
+  return share(static_cast<double>(matched), known);
 }
 double DisparityErrors::bad_of_matched(std::size_t t) const {
-  return ratio(static_cast<double>(bad[t]), matched);
+  return share(static_cast<double>(bad[t]), matched);
 }
 double DisparityErrors::bad_of_known(std::size_t t) const {
-  return ratio(static_cast<double>(bad[t] + known - matched), known);
+  return share(static_cast<double>(bad[t] + known - matched), known);
 }
 double DisparityErrors::mean_absolute_px() const {
-  return ratio(absolute_sum_px, matched);
+  return share(absolute_sum_px, matched);
 }
 double DisparityErrors::root_mean_square_px() const {
-  return std::sqrt(ratio(square_sum_px2, matched));
+  return std::sqrt(share(square_sum_px2, matched));
 }
 double DisparityErrors::sigma_px() const {
-  return std::sqrt(ratio(square_sum_within_1_px2, matched - bad[kWithinOnePx]));
+  return std::sqrt(share(square_sum_within_1_px2, matched - bad[kWithinOnePx]));
 }
 
 DisparityErrors disparity_errors(View<const float> ours_px, View<const float> truth_px,

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/image.hpp>
+#include <cairn/core/statistics.hpp>
 #include <cairn/evaluation/object_error.hpp>
 #include <cassert>
 #include <cmath>
@@ -164,16 +165,6 @@ Image<std::uint8_t> mask_where(View<const T> labels, Predicate inside) {
                    [&](T label) { return static_cast<std::uint8_t>(inside(label) ? 1 : 0); });
   }
   return mask;
-}
-
-double share(int part, int whole) {
-  return whole > 0 ? part / static_cast<double>(whole) : std::numeric_limits<double>::quiet_NaN();
-}
-
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / static_cast<double>(values.size());
 }
 
 }  // namespace

@@ -12,8 +12,7 @@
 #include <cairn/input/frame_list.hpp>
 #include <cairn/input/frame_watch.hpp>
 #include <cairn/input/mcap_sequence.hpp>
-#include <cairn/input/open_ros2.hpp>
-#include <cairn/input/open_video.hpp>
+#include <cairn/input/open_parts.hpp>
 #include <cairn/io/names_and_numbers.hpp>
 #include <cairn/ros/mcap.hpp>
 

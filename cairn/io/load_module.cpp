@@ -44,23 +44,27 @@ std::optional<fs::path> module_file(const char* module) {
 
 }  // namespace
 
-void* module_entry(const ModuleNames& names, const std::string& source) {
-  const std::optional<fs::path> file = module_file(names.file);
+void* module_entry(const Part& part, const char* function, const std::string& source) {
+  const std::optional<fs::path> file = module_file(part.file);
   if (!file) {
-    throw Error(source + ": " + names.what + " " + names.file + ", which is not installed next to cairn (" +
-                names.package + ")");
+    throw Error(source + ": " + part.what + " " + part.file + ", which is not installed next to cairn (" +
+                part.package + ")");
   }
   void* module = ::dlopen(file->c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) {
     const char* reason = ::dlerror();
-    throw Error(source + ": " + names.what + " " + names.library + ": " +
+    throw Error(source + ": " + part.what + " " + part.library + ": " +
                 (reason != nullptr ? reason : file->string()));
   }
-  const auto version = reinterpret_cast<ModuleVersion>(::dlsym(module, kModuleVersion));
-  void* entry = ::dlsym(module, names.entry);
+  const auto version = reinterpret_cast<const char* (*)()>(::dlsym(module, "cairn_module_version"));
+  void* entry = ::dlsym(module, function);
   if (version == nullptr || entry == nullptr || std::string_view(version()) != CAIRN_VERSION)
     throw Error(file->string() + ": is of another version of cairn, expected " CAIRN_VERSION);
   return entry;
+}
+
+void* no_entry(const Part& part, const std::string& source) {
+  throw Error(source + ": " + part.missing);
 }
 
 }  // namespace cairn::io

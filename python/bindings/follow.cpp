@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/input/sequence_scores_json.hpp>
 #include <cairn/live/runner.hpp>
 #include <cairn/output/follow_files.hpp>
 #include <map>
@@ -341,6 +342,14 @@ void bind_follow(py::module_& m) {
       .def("next", &PyFollower::next, Released())
       .def("options", &PyFollower::options, Released());
   m.def("follow", &follow, Released());
+  m.def(
+      "score_sequence",
+      [](const std::filesystem::path& result, const std::filesystem::path& truth, int min_area,
+         bool tentative) {
+        return output::json_text(
+            input::json_of(input::score_sequence(result, input::load_truth(truth), {min_area, tentative})));
+      },
+      Released());
   py::class_<FollowedFrame> followed(m, "FollowedFrame");
   followed.def_readonly("landmarks", &FollowedFrame::landmarks)
       .def_readonly("events", &FollowedFrame::events)

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 
 from . import _cairn
@@ -257,3 +259,11 @@ follow = checked(follow, groups=ALL_GROUPS)
 @of_cpp
 def follow_options() -> List[Option]:
     """The options of sequences with their defaults, in the order of the stages. options() lists those of a frame."""
+
+
+@checked
+def score_sequence(result: PathLike, truth: PathLike, min_area: int = 200, tentative: bool = False) -> Dict[str, Any]:
+    """Compares a followed sequence with its truth: the summary of `cairn evaluate --sequence --json` (docs/evaluation.md).
+    result: what `cairn follow -o` wrote, or a MOTS text. truth: a folder of frames or a MOTS text. min_area: px, smaller
+    true objects are ignored. tentative: unconfirmed tracks count as well."""
+    return json.loads(_cairn.score_sequence(result, truth, min_area, tentative))

@@ -15,4 +15,4 @@ def missing(name):
     return function
 
 
-Follower, follow, follow_options = map(missing, ("Follower", "follow", "follow_options"))
+Follower, follow, follow_options, score_sequence = map(missing, ("Follower", "follow", "follow_options", "score_sequence"))

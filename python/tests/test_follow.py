@@ -43,6 +43,15 @@ def test_a_sequence_gives_the_output_of_the_command(command, steps):
     assert len(steps) == 6
 
 
+def test_the_scores_of_a_sequence_equal_those_of_the_command(command, steps, tmp_path):
+    (tmp_path / "tracks.jsonl").write_text("".join(step.to_json() for step in steps))
+    scores = tmp_path / "scores.json"
+    subprocess.run([command, "evaluate", tmp_path, SEQUENCE, "--sequence", "--json", scores], check=True, capture_output=True)
+    assert cairn.score_sequence(tmp_path, SEQUENCE) == json.loads(scores.read_text())["summary"]
+    with pytest.raises(cairn.Error, match="no such file or folder"):
+        cairn.score_sequence(tmp_path / "none", SEQUENCE)
+
+
 def test_options_files_and_frames_equal_those_of_the_command(command, tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text("tracking:\n  min_hits: 2\nodometry:\n  max_features: 150\n")

@@ -5,6 +5,7 @@
 #include <array>
 #include <cairn/core/geometry.hpp>
 #include <cairn/core/image.hpp>
+#include <cairn/sequence/pose.hpp>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -14,35 +15,26 @@
 /// so that estimates can be compared with the truth.
 namespace cairn::support {
 
-struct Spot {
-  double x = 0;
-  double y = 0;
-  double z = 0;
-};
-/// A rigid motion: rotation (row-major), then translation.
+/// A rigid motion: rotation (row-major), then translation; a Pose without the library of sequences.
 struct Motion {
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
-  Spot translation_m;
+  Point3 translation_m;
 
-  [[nodiscard]] Spot rotated(Spot p) const {
+  [[nodiscard]] Point3 rotated(Point3 p) const {
     const auto& r = rotation;
     return {r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
             r[6] * p.x + r[7] * p.y + r[8] * p.z};
   }
-  Spot operator()(Spot p) const {
-    const Spot turned = rotated(p);
-    return {turned.x + translation_m.x, turned.y + translation_m.y, turned.z + translation_m.z};
-  }
+  Point3 operator()(Point3 p) const { return rotated(p) + translation_m; }
 };
 inline Motion inverse(const Motion& motion) {
   const auto& r = motion.rotation;
   Motion back{{r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]}, {}};
-  const Spot shift = back.rotated(motion.translation_m);
-  back.translation_m = {-shift.x, -shift.y, -shift.z};
+  back.translation_m = -1.0 * back.rotated(motion.translation_m);
   return back;
 }
 /// Rotation about an axis by its length in rad (Rodrigues).
-inline Motion rotation_about(Spot axis) {
+inline Motion rotation_about(Point3 axis) {
   const double angle = std::hypot(axis.x, axis.y, axis.z);
   const double x = axis.x / angle;
   const double y = axis.y / angle;
@@ -122,10 +114,10 @@ inline double wall(double u, double v) {
 
 /// The surface hit by a ray of the left camera's frame: the board, its white margin, the floor, or the wall
 /// 1.6 m away.
-inline double grey_of(Spot from, Spot ray, const Motion& board) {
+inline double grey_of(Point3 from, Point3 ray, const Motion& board) {
   const Motion to_board = inverse(board);
-  const Spot start = to_board(from);
-  const Spot along = to_board.rotated(ray);
+  const Point3 start = to_board(from);
+  const Point3 along = to_board.rotated(ray);
   const double steps = -start.z / along.z;
   const double u = (start.x + steps * along.x) / kBoardSquare + (kBoardColumns + 1) / 2.0;
   const double v = (start.y + steps * along.y) / kBoardSquare + (kBoardRows + 1) / 2.0;
@@ -145,9 +137,9 @@ inline double grey_of(Spot from, Spot ray, const Motion& board) {
 }
 
 /// Four rays per pixel, in the camera's frame.
-inline const std::vector<Spot>& rays() {
-  static const std::vector<Spot> all = [] {
-    std::vector<Spot> rays;
+inline const std::vector<Point3>& rays() {
+  static const std::vector<Point3> all = [] {
+    std::vector<Point3> rays;
     for (int y = 0; y < kRawSize.height; ++y) {
       for (int x = 0; x < kRawSize.width; ++x) {
         for (int k = 0; k < 4; ++k) {

@@ -270,8 +270,8 @@ class GstCamera : public Camera {
 
 }  // namespace
 
-std::unique_ptr<Camera> make_gst_camera(const GstRequest& request) {
-  return std::make_unique<GstCamera>(request);
-}
-
 }  // namespace cairn::input
+
+cairn::input::Camera* cairn_open_gst(const cairn::input::GstRequest& request) {
+  return std::make_unique<cairn::input::GstCamera>(request).release();
+}

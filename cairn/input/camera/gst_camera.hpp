@@ -7,8 +7,9 @@
 
 #include <cairn/input/camera/camera.hpp>
 #include <cairn/input/camera/frame_bytes.hpp>
+#include <cairn/io/load_module.hpp>
 
-/// GStreamer pipelines, through a module (camera/gst_module.cpp). Internal to source.
+/// GStreamer pipelines, a part of its own (io/load_module.hpp). Internal to source.
 namespace cairn::input {
 
 struct GstRequest {
@@ -22,11 +23,8 @@ struct GstRequest {
 
 /// Throws Error if the pipeline cannot be created or started, or in a build without GStreamer.
 std::unique_ptr<Camera> open_gst(const GstRequest& request);
-/// The same within this program or module.
-std::unique_ptr<Camera> make_gst_camera(const GstRequest& request);
-
-inline constexpr const char* kGstEntry = "cairn_open_gst";
-/// The function of that name in the module: the caller owns the result. Throws Error.
-using GstEntry = Camera* (*)(const GstRequest&);
 
 }  // namespace cairn::input
+
+/// The entry of the part; the caller owns the result.
+extern "C" CAIRN_EXPORT cairn::input::Camera* cairn_open_gst(const cairn::input::GstRequest& request);

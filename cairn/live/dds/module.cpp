@@ -5,20 +5,11 @@
 #include <cairn/input/dds/ros2_sequence.hpp>
 #include <cairn/live/dds/ros2_sink.hpp>
 
-extern "C" {
-
-__attribute__((visibility("default"))) const char* cairn_module_version() {
-  return CAIRN_VERSION;
-}
-
-__attribute__((visibility("default"))) cairn::input::Sequence* cairn_open_ros2(
-    const cairn::input::Ros2Request& request) {
+cairn::input::Sequence* cairn_open_ros2(const cairn::input::Ros2Request& request) {
   return cairn::input::ros2_sequence(request.source, request.options, request.pool).release();
 }
 
-__attribute__((visibility("default"))) cairn::live::Sink* cairn_publish_ros2(
-    const cairn::live::Ros2Options& options, const std::optional<cairn::StereoRig>& rig) {
+cairn::live::Sink* cairn_publish_ros2(const cairn::live::Ros2Options& options,
+                                      const std::optional<cairn::StereoRig>& rig) {
   return cairn::live::ros2_sink(options, rig).release();
 }
-
-}  // extern "C"

@@ -2,13 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/input/dds/module.hpp>
+#include <cairn/input/open_parts.hpp>
 #include <cairn/live/ros2.hpp>
 
-namespace cairn::live {
-
-inline constexpr const char* kRos2SinkEntry = "cairn_publish_ros2";
-/// The function of that name: the caller owns the result. Throws Error.
-using Ros2SinkEntry = Sink* (*)(const Ros2Options&, const std::optional<StereoRig>&);
-
-}  // namespace cairn::live
+/// The entry of the part for ROS 2 topics; the caller owns the result.
+extern "C" CAIRN_EXPORT cairn::live::Sink* cairn_publish_ros2(const cairn::live::Ros2Options& options,
+                                                              const std::optional<cairn::StereoRig>& rig);

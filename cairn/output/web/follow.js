@@ -72,17 +72,11 @@
   const isSeen = (track) => track.object > 0;
   const speedOf = (track) => (track.velocity_m_s ? Math.hypot(...track.velocity_m_s) : null);
 
-  /** From the camera to the map, row-major. */
-  function rotationOf([x, y, z, w]) {
-    return [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
-      2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-      2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)];
-  }
-  for (const facts of frames) facts.rotation = facts.pose && rotationOf(facts.pose.quaternion_xyzw);
+  for (const facts of frames) facts.mapFromCamera = facts.pose && motionOf(facts.pose);
   /** Depth along the camera's axis in m, the z of objects.json. Null if the camera's position is unknown. */
   function depthOf(track, facts) {
     if (!rig || !facts.pose || !track.position_m) return null;
-    return facts.rotation.reduce((sum, value, k) => (k % 3 === 2 ? sum + value * (track.position_m[(k - 2) / 3] - facts.pose.position_m[(k - 2) / 3]) : sum), 0);
+    return movedBack(facts.mapFromCamera, track.position_m)[2];
   }
 
   /** The frames of each track in which it counts. */
@@ -425,9 +419,6 @@
     // In the drawing x points up and y to the left: the angle is counted clockwise from the right.
     return {rx: kChi2 * Math.sqrt(middle + apart), ry: kChi2 * Math.sqrt(Math.max(0, middle - apart)), turned: -90 - angle * 180 / Math.PI};
   }
-  function set(node, attributes) {
-    for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
-  }
 
   function trackNode(id) {
     if (above.nodes.has(id)) return above.nodes.get(id);
@@ -487,13 +478,8 @@
     markAbove();
   }
   function sightOf(facts, [cx, cy], reach) {
-    const m = facts.rotation;
-    const ray = (column) => {
-      const right = (column - rig.cx_px) / rig.focal_px;
-      return Math.atan2(m[3] * right + m[5], m[0] * right + m[2]);
-    };
-    const at = (angle) => text2([cx - reach * Math.sin(angle), cy - reach * Math.cos(angle)]);
-    return `M${text2([cx, cy])}L${at(ray(width - 0.5))}A${reach} ${reach} 0 0 0 ${at(ray(-0.5))}Z`;
+    const [right, left] = sideAngles(facts.mapFromCamera, rig, width).map((angle) => text2([cx - reach * Math.sin(angle), cy - reach * Math.cos(angle)]));
+    return `M${text2([cx, cy])}L${right}A${reach} ${reach} 0 0 0 ${left}Z`;
   }
   function markAbove() {
     const chosen = chosenTrack();
@@ -732,12 +718,9 @@
   /** Shows the frame once it is decoded; if more were requested meanwhile, only the last of them. */
   function show(index) {
     wanted = Math.min(run.frames - 1, Math.max(0, index));
-    byId('slider').value = wanted;
     const facts = frames[wanted];
     byId('slider').setAttribute('aria-valuetext', `${facts.name}, ${fixed(seconds[wanted], 2)} s`);
-    byId('frame-name').replaceChildren(facts.name, el('small', {}, `${wanted + 1} / ${run.frames}`), el('small', {}, `${fixed(seconds[wanted], 2)} s`));
-    byId('previous').disabled = wanted === 0;
-    byId('next').disabled = wanted === run.frames - 1;
+    nameFrame(wanted, facts.name, el('small', {}, `${wanted + 1} / ${run.frames}`), el('small', {}, `${fixed(seconds[wanted], 2)} s`));
     movePlayhead();
     if (!drawing) return draw();
   }
@@ -866,7 +849,6 @@
     });
     // A list used with the pointer returns the keys to the player.
     addEventListener('change', ({target}) => { if (target.matches('select:not(:focus-visible)')) target.blur(); });
-    byId('slider').addEventListener('input', (event) => go(Number(event.target.value)));
     byId('strip').addEventListener('pointermove', (event) => { if (event.pointerType !== 'touch') describeTime(event); });
     byId('strip').addEventListener('pointerleave', hideTip);
     timeLegend();
@@ -875,8 +857,7 @@
     // The curve uses the theme's colours.
     byId('theme').addEventListener('click', drawStrip);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawStrip);
-    addEventListener('hashchange', () => go(Number(location.hash.slice(1)) - 1 || 0));
-    show(Number(location.hash.slice(1)) - 1 || 0);
+    show(linkedFrame());
   }
   begin();
 })();

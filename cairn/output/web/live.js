@@ -484,12 +484,7 @@
     const d = newest.stats?.num_disparities;
     return isNumber(d) ? (value - 1) / 254 * d + (newest.stats.min_disparity ?? 0) : NaN;
   };
-  function metresOf(disparity) {
-    const rig = newest.stats?.rig;
-    if (!rig) return NaN;
-    const shifted = disparity + (rig.doffs_px ?? 0);
-    return shifted > 0 ? rig.focal_px * rig.baseline_m / shifted : Infinity;
-  }
+  const metres = (disparity) => metresOf(disparity, newest.stats?.rig);
   function mixColours() {
     const key = [Math.round(range.low), Math.round(range.high), state.reason, state.phase].join();
     if (key === colours.key) return;
@@ -574,7 +569,7 @@
       row.classList.toggle('off', !counts.get(bit));
     }
     [range.low, (range.low + range.high) / 2, range.high].forEach((v, k) => {
-      const d = pixelsOf(v), z = metresOf(d);
+      const d = pixelsOf(v), z = metres(d);
       legend.ticks[k].replaceChildren(...(isNumber(d) ? [`${fixed(d, 0)} px`, ...(isNumber(z) ? [el('br'), `${fixed(z, 1)} m`] : [])] : []));
     });
     if (!panels.disparity.isRead) write(panels.disparity.count, `density ${percent(1 - hole / all, 0)}`);
@@ -599,7 +594,7 @@
     if (!at) return;
     const value = frame.disparity.values[at.i], place = `(${at.x}, ${at.y})`;
     if (value) {
-      const d = pixelsOf(value), z = metresOf(d);
+      const d = pixelsOf(value), z = metres(d);
       panels.disparity.count.textContent = `${place}: ${fixed(d, 1)} px${isNumber(z) ? `, ${fixed(z, 2)} m` : ''}`;
       return;
     }
@@ -638,22 +633,13 @@
     if (life.count === 1) slowly();
   }
 
-  // Matrices are rows of 3×4.
   const kLevelCamera = [0, 0, 1, 0, -1, 0, 0, 0, 0, -1, 0, 0];  // if no floor is known
   function floorFromCamera({ground}) {
     if (!ground?.normal || !ground.forward || !ground.left) return null;
     return [...ground.forward, 0, ...ground.left, 0, ...ground.normal, ground.height_m];
   }
   /** Null if the camera's position is unknown. */
-  function mapFromCamera({camera}) {
-    if (!camera) return null;
-    const [x, y, z, w] = camera.quaternion_xyzw, [a, b, c] = camera.position_m;
-    return [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), a,
-      2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), b,
-      2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), c];
-  }
-  const moved = (m, p) => [0, 4, 8].map((r) => m[r] * p[0] + m[r + 1] * p[1] + m[r + 2] * p[2] + m[r + 3]);
-  const movedBack = (m, p) => [0, 1, 2].map((c) => m[c] * (p[0] - m[3]) + m[4 + c] * (p[1] - m[7]) + m[8 + c] * (p[2] - m[11]));
+  const mapFromCamera = ({camera}) => camera && motionOf(camera);
   function takeThings(stats, seconds) {
     const onFloor = floorFromCamera(stats) ?? kLevelCamera, inMap = mapFromCamera(stats);
     thingsById = new Map();

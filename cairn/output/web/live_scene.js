@@ -68,7 +68,7 @@ function makeScene(stage, look, onPick) {
   const eye = () => minus3(view.at, [
     Math.cos(view.yaw) * Math.cos(view.pitch), Math.sin(view.yaw) * Math.cos(view.pitch), -Math.sin(view.pitch)].map((v) => v * view.far));
   const cameraPlace = () => { const m = shown.floorFromCamera; return [m[3], m[7], m[11]]; };
-  const toFloor = (p) => { const m = shown.floorFromCamera; return [0, 4, 8].map((r) => m[r] * p[0] + m[r + 1] * p[1] + m[r + 2] * p[2] + m[r + 3]); };
+  const toFloor = (p) => moved(shown.floorFromCamera, p);
 
   function lookFrom(name) {
     Object.assign(view, kViews[name], {isTouched: false});

@@ -57,12 +57,7 @@
   };
   const current = () => frames[state.frame];
 
-  /** Distance in m for a disparity, by the frame's rig. */
-  function metres(disparity, rig = current().rig) {
-    if (!rig) return NaN;
-    const shifted = disparity + rig.doffs_px;
-    return shifted > 0 ? (rig.focal_px * rig.baseline_m) / shifted : Infinity;
-  }
+  const metres = (disparity) => metresOf(disparity, current().rig);
   /** Position of a pixel with a disparity in the left camera's frame, in m: x right, y down, z forward. Null without
       a rig. */
   function placeInCamera(x, y, disparity) {
@@ -72,7 +67,7 @@
   /** The same position relative to the floor below the camera: x forward, y left, z up. Null without a floor. */
   function placeOnFloor(place) {
     const matrix = current().result?.floor_frame?.floor_from_camera;
-    return place && matrix ? [0, 4, 8].map((row) => place.reduce((sum, value, k) => sum + matrix[row + k] * value, matrix[row + 3])) : null;
+    return place && matrix ? moved(matrix, place) : null;
   }
   const distanceText = (object) =>
     object?.position_m ? `${fixed(object.position_m[2], 2)} m`
@@ -256,14 +251,6 @@
     const [ax, ay] = polar(long / 2, yaw), [bx, by] = polar(short / 2, yaw + Math.PI / 2);
     return [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([a, b]) => [x + a * ax + b * bx, y + a * ay + b * by]);
   }
-  /** The viewing directions of the image's sides, from right to left. */
-  function sideAngles({rig, width, result}) {
-    const m = result.floor_frame.floor_from_camera;
-    return [width - 0.5, -0.5].map((column) => {
-      const right = (column - rig.cx_px) / rig.focal_px;
-      return Math.atan2(m[4] * right + m[6], m[0] * right + m[2]);
-    });
-  }
 
   let drawnPlace = null;  // floor → drawing, of the current view from above
   function drawAbove() {
@@ -274,7 +261,7 @@
     const boxes = objects.filter((o) => o.box_on_floor).map((o) => ({...o, corners: cornersOf(o.box_on_floor)})).reverse();  // nearest on top
     const places = [...dots, ...boxes.flatMap((o) => o.corners)];
     const reach = 1.05 * (places.length ? Math.max(...places.map((p) => Math.hypot(...p))) : config?.obstacles?.range ?? 6);
-    const [right, left] = sideAngles(facts);
+    const [right, left] = sideAngles(facts.result.floor_frame.floor_from_camera, facts.rig, facts.width);
     const beside = Math.max(reach * Math.sin(Math.max(-right, left)), ...places.map(([, y]) => Math.abs(y)));
     const scale = Math.min((high - bottom - 16) / reach, (wide / 2 - 34) / beside);
     const at = ([x, y]) => [wide / 2 - scale * y, high - bottom - scale * x].map((v) => v.toFixed(1));
@@ -306,7 +293,7 @@
     const ring = document.querySelector('.above .here');
     if (!ring) return;
     const [x, y] = onFloor ? drawnPlace(onFloor) : [0, 0];
-    for (const [name, value] of Object.entries({cx: x, cy: y, visibility: onFloor ? 'visible' : 'hidden'})) ring.setAttribute(name, value);
+    set(ring, {cx: x, cy: y, visibility: onFloor ? 'visible' : 'hidden'});
   }
 
   /** panel → its modes; `needs` are the maps that it requires. */
@@ -790,10 +777,7 @@
   async function show(index) {
     wanted = Math.min(run.frames - 1, Math.max(0, index));
     const mine = wanted;
-    byId('slider').value = mine;
-    byId('frame-name').replaceChildren(frames[mine].name, el('small', {}, `${mine + 1} / ${run.frames}`));
-    byId('previous').disabled = mine === 0;
-    byId('next').disabled = mine === run.frames - 1;
+    nameFrame(mine, frames[mine].name, el('small', {}, `${mine + 1} / ${run.frames}`));
     let maps;
     try {
       maps = await mapsOf(mine);
@@ -866,10 +850,8 @@
     if (!evaluates) byId('tables').style.setProperty('--first', '1.6fr');  // its objects have more columns
     if (run.evaluation) tiles();
     byId('frames').hidden = run.frames < 2;
-    byId('slider').addEventListener('input', (event) => go(Number(event.target.value)));
     leadThroughFrames({wanted: () => wanted, go, playOrPause});
-    addEventListener('hashchange', () => go(Number(location.hash.slice(1)) - 1 || 0));
-    show(Number(location.hash.slice(1)) - 1 || 0);
+    show(linkedFrame());
   }
   begin();
 })();

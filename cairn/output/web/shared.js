@@ -24,6 +24,10 @@ function made(node, properties, children) {
 const el = (tag, properties = {}, ...children) => made(document.createElement(tag), properties, children);
 const svg = (tag, properties = {}, ...children) => made(document.createElementNS('http://www.w3.org/2000/svg', tag), properties, children);
 
+function set(node, attributes) {
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+}
+
 const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits) : '–');
 const percent = (share, digits = 1) => (isNumber(share) ? `${(100 * share).toFixed(digits)} %` : '–');
@@ -97,6 +101,27 @@ function keptLast(make, most) {
     return found;
   };
 }
+
+// ---- places, in m; rigid motions are rows of 3×4 ----
+
+function motionOf({quaternion_xyzw: [x, y, z, w], position_m: [a, b, c]}) {
+  return [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), a,
+    2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), b,
+    2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), c];
+}
+const moved = (m, p) => [0, 4, 8].map((r) => m[r] * p[0] + m[r + 1] * p[1] + m[r + 2] * p[2] + m[r + 3]);
+const movedBack = (m, p) => [0, 1, 2].map((c) => m[c] * (p[0] - m[3]) + m[4 + c] * (p[1] - m[7]) + m[8 + c] * (p[2] - m[11]));
+/** The distance for a disparity; NaN without a rig. */
+function metresOf(disparity, rig) {
+  if (!rig) return NaN;
+  const shifted = disparity + (rig.doffs_px ?? 0);
+  return shifted > 0 ? rig.focal_px * rig.baseline_m / shifted : Infinity;
+}
+/** The viewing directions of the image's sides on the floor or map to which `m` moves the camera, from right to left. */
+const sideAngles = (m, rig, width) => [width - 0.5, -0.5].map((column) => {
+  const right = (column - rig.cx_px) / rig.focal_px;
+  return Math.atan2(m[4] * right + m[6], m[0] * right + m[2]);
+});
 
 // ---- pictures ----
 
@@ -315,6 +340,15 @@ function playButton(plays) {
   byId('play').setAttribute('aria-pressed', plays);
 }
 
+/** The frame of the address: that of "#3" is the third. */
+const linkedFrame = () => Number(location.hash.slice(1)) - 1 || 0;
+function nameFrame(index, ...names) {
+  byId('slider').value = index;
+  byId('frame-name').replaceChildren(...names);
+  byId('previous').disabled = index === 0;
+  byId('next').disabled = index === run.frames - 1;
+}
+
 /**
  * Keys and buttons that change the frame. `wanted()`: the frame requested last; `more`: key → target frame, in
  * addition to arrows, Home and End.
@@ -324,6 +358,8 @@ function leadThroughFrames({wanted, go, playOrPause, more = () => ({})}) {
   byId('previous').addEventListener('click', () => go(wanted() - 1));
   byId('next').addEventListener('click', () => go(wanted() + 1));
   byId('play').addEventListener('click', playOrPause);
+  byId('slider').addEventListener('input', (event) => go(Number(event.target.value)));
+  addEventListener('hashchange', () => go(linkedFrame()));
   // A button that was clicked, rather than reached by keys, leaves the space bar to play and pause.
   byId('frames').addEventListener('click', (event) => { if (event.detail && event.target.matches('button')) event.target.blur(); });
   addEventListener('keydown', (event) => {

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/core/statistics.hpp>
 #include <cairn/timing/drawn_pair.hpp>
 #include <cairn/timing/frame_times.hpp>
-#include <cairn/timing/statistics.hpp>
 #include <cmath>
 #include <cstdlib>
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include "sequence_scores.hpp"
-
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/input/sequence_scores.hpp>
 #include <cmath>
 #include <set>
 
-namespace cairn::cli {
+namespace cairn::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,7 +19,7 @@ constexpr double kMovesMetres = 1e-3;      // per frame; small, as the truth is 
 /// A result frame and its truth.
 struct Pair {
   const output::TrackFrame* ours = nullptr;
-  const input::TrueFrame* truth = nullptr;
+  const TrueFrame* truth = nullptr;
   std::int64_t index = 0;  // index of the truth
 };
 
@@ -47,7 +46,7 @@ Result load_result(const fs::path& path) {
   return result;
 }
 
-std::vector<Pair> pairs_of(const Result& result, const input::TrueSequence& truth, SequenceScores& scores) {
+std::vector<Pair> pairs_of(const Result& result, const TrueSequence& truth, SequenceScores& scores) {
   const bool by_number = result.is_numbered || truth.is_numbered;
   std::map<std::string, std::size_t> names;
   for (std::size_t k = 0; k < truth.frames.size(); ++k) names[truth.frames[k].name] = k;
@@ -78,7 +77,7 @@ std::vector<Pair> pairs_of(const Result& result, const input::TrueSequence& trut
   return pairs;
 }
 
-std::vector<output::TrackRecord> counted(const output::TrackFrame& frame, const SequenceOptions& options) {
+std::vector<output::TrackRecord> counted(const output::TrackFrame& frame, const ScoreOptions& options) {
   std::vector<output::TrackRecord> tracks;
   for (const output::TrackRecord& track : frame.tracks) {
     const bool is_sure = options.tentative || track.state != TrackState::tentative;
@@ -138,7 +137,7 @@ std::vector<ScoredFrame> by_landmark(std::vector<ScoredFrame> frames,
   return frames;
 }
 
-void score_masks(const std::vector<Pair>& pairs, const Result& result, const SequenceOptions& options,
+void score_masks(const std::vector<Pair>& pairs, const Result& result, const ScoreOptions& options,
                  SequenceScores& scores) {
   ObjectErrorConfig config;
   config.min_area = options.min_area;
@@ -146,7 +145,7 @@ void score_masks(const std::vector<Pair>& pairs, const Result& result, const Seq
   for (const Pair& pair : pairs) {
     const std::vector<output::TrackRecord> tracks = counted(*pair.ours, options);
     const std::string where = result.path.string() + ": frame " + pair.ours->name;
-    Image<TruthId> truth = input::load_true_labels(*pair.truth);
+    Image<TruthId> truth = load_true_labels(*pair.truth);
     if (truth.empty() && !tracks.empty())
       truth = Image<TruthId>(tracks.front().mask->size, TruthId::none, {});
     const Image<TrackId> ours = output::track_labels(tracks, truth.size(), where);
@@ -215,9 +214,9 @@ PlaceErrors place_errors(const std::vector<Pair>& pairs, const SequenceScores& s
 /// Which true objects move in which true frames.
 class TrueMotion {
  public:
-  explicit TrueMotion(const input::TrueSequence& truth) {
+  explicit TrueMotion(const TrueSequence& truth) {
     is_known_ = truth.has_events;
-    for (const input::TrueEvent& event : truth.events) {
+    for (const TrueEvent& event : truth.events) {
       for (std::int64_t k = event.first_frame; event.is_in_view && k <= event.last_frame; ++k) {
         if (k < static_cast<std::int64_t>(truth.frames.size())) moves_[event.id].insert(k);
       }
@@ -237,7 +236,7 @@ class TrueMotion {
   }
 
  private:
-  void from_places(const input::TrueSequence& truth) {
+  void from_places(const TrueSequence& truth) {
     for (std::size_t k = 1; k < truth.frames.size(); ++k) {
       for (const auto& [id, place] : truth.frames[k].places) {
         const auto before = truth.frames[k - 1].places.find(id);
@@ -254,7 +253,7 @@ class TrueMotion {
   bool is_known_ = false;
 };
 
-MovingErrors moving_errors(const std::vector<Pair>& pairs, const input::TrueSequence& truth,
+MovingErrors moving_errors(const std::vector<Pair>& pairs, const TrueSequence& truth,
                            const SequenceScores& scores) {
   MovingErrors errors;
   const TrueMotion motion(truth);
@@ -282,18 +281,17 @@ MovingErrors moving_errors(const std::vector<Pair>& pairs, const input::TrueSequ
   return errors;
 }
 
-namespace {
+std::int64_t most_frequent(const std::map<std::int64_t, int>& counts) {
+  return std::max_element(counts.begin(), counts.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
 
 /// A stay of an object in view, with no gap of kOutOfView frames.
 struct Stretch {
   std::int64_t last = 0;
   std::int64_t frames = 0;
   std::map<std::int64_t, int> landmarks;  // number of frames for each landmark that its track has
-  [[nodiscard]] std::int64_t most_frequent() const {
-    return std::max_element(landmarks.begin(), landmarks.end(),
-                            [](const auto& a, const auto& b) { return a.second < b.second; })
-        ->first;
-  }
 };
 using Stays = std::map<std::int64_t, std::vector<Stretch>>;  // of each object
 
@@ -326,8 +324,6 @@ std::map<std::int64_t, std::pair<std::int64_t, int>> owners_of(const Stays& obje
   return owner;
 }
 
-}  // namespace
-
 LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceScores& scores) {
   Stays objects = stays_of(pairs, scores);
   LandmarkErrors errors;
@@ -348,20 +344,20 @@ LandmarkErrors landmark_errors(const std::vector<Pair>& pairs, const SequenceSco
       if (known && stretch.frames >= kInViewAgain) {
         ++errors.again;
         if (!stretch.landmarks.empty()) {
-          const std::int64_t now = stretch.most_frequent();
+          const std::int64_t now = most_frequent(stretch.landmarks);
           errors.re_identified += stretch.landmarks.contains(*known) ? 1 : 0;
           const auto whose = owner.find(now);
           errors.wrong += whose != owner.end() && whose->second.first != id ? 1 : 0;
         }
       }
-      if (!known && !stretch.landmarks.empty()) known = stretch.most_frequent();
+      if (!known && !stretch.landmarks.empty()) known = most_frequent(stretch.landmarks);
     }
   }
   return errors;
 }
 
-ChangeErrors change_errors(const Result& result, const std::vector<Pair>& pairs,
-                           const input::TrueSequence& truth, const SequenceScores& scores) {
+ChangeErrors change_errors(const Result& result, const std::vector<Pair>& pairs, const TrueSequence& truth,
+                           const SequenceScores& scores) {
   ChangeErrors errors;
   std::error_code ignored;
   errors.is_known = truth.has_events && fs::exists(result.changes, ignored);
@@ -375,20 +371,17 @@ ChangeErrors change_errors(const Result& result, const std::vector<Pair>& pairs,
   });
   const auto object_of = [](const auto& counts, std::int64_t key) -> std::optional<std::int64_t> {
     const auto found = counts.find(key);
-    if (found == counts.end()) return std::nullopt;
-    return std::max_element(found->second.begin(), found->second.end(),
-                            [](const auto& a, const auto& b) { return a.second < b.second; })
-        ->first;
+    return found == counts.end() ? std::nullopt : std::optional(most_frequent(found->second));
   };
   std::set<std::int64_t> found;
   const std::optional<Pose> world = world_from_map(pairs);
-  const auto event_of = [&](std::int64_t id, bool is_in_view) -> const input::TrueEvent* {
-    for (const input::TrueEvent& event : truth.events) {
+  const auto event_of = [&](std::int64_t id, bool is_in_view) -> const TrueEvent* {
+    for (const TrueEvent& event : truth.events) {
       if (event.id == id && event.is_in_view == is_in_view) return &event;
     }
     return nullptr;
   };
-  for (const input::TrueEvent& event : truth.events) errors.expected += event.is_in_view ? 0 : 1;
+  for (const TrueEvent& event : truth.events) errors.expected += event.is_in_view ? 0 : 1;
   for (const output::ChangeRecord& change : output::load_changes(result.changes)) {
     if (change.kind != "moved" && change.kind != "gone" && change.kind != "new") continue;
     std::optional<std::int64_t> id;
@@ -396,7 +389,7 @@ ChangeErrors change_errors(const Result& result, const std::vector<Pair>& pairs,
     if (!id && change.landmark) id = object_of(by_landmark, *change.landmark);
     if (id && event_of(*id, true) != nullptr) continue;
     ++errors.reported;
-    const input::TrueEvent* event = id ? event_of(*id, false) : nullptr;
+    const TrueEvent* event = id ? event_of(*id, false) : nullptr;
     if (event == nullptr) {
       ++errors.wrong;
       continue;
@@ -425,8 +418,7 @@ std::optional<TrajectoryError> trajectory(const std::vector<Pair>& pairs) {
 
 }  // namespace
 
-SequenceScores score_sequence(const fs::path& path, const input::TrueSequence& truth,
-                              const SequenceOptions& options) {
+SequenceScores score_sequence(const fs::path& path, const TrueSequence& truth, const ScoreOptions& options) {
   const Result result = load_result(path);
   SequenceScores scores;
   scores.name = path.string();
@@ -442,4 +434,4 @@ SequenceScores score_sequence(const fs::path& path, const input::TrueSequence& t
   return scores;
 }
 
-}  // namespace cairn::cli
+}  // namespace cairn::input

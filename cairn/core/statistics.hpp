@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
-namespace cairn::timing {
+namespace cairn {
 
 /// The smallest value that at least `share` (0 … 1) of the values do not exceed; NaN without values. Ignores
 /// NaN.
@@ -19,6 +20,11 @@ inline double percentile(std::vector<double> values, double share) {
   const std::size_t index = std::clamp<std::size_t>(rank, 1, values.size()) - 1;
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
   return values[index];
+}
+
+/// NaN without a whole.
+inline double share(double part, std::int64_t whole) {
+  return whole > 0 ? part / static_cast<double>(whole) : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Ignores NaN; NaN without values.
@@ -33,4 +39,4 @@ inline double mean(const std::vector<double>& values) {
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace cairn::timing
+}  // namespace cairn

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-/// The scores of `cairn evaluate --sequence`. (docs/evaluation.md, "Sequences")
-namespace cairn::cli {
+/// The scores of a followed sequence against its truth. (docs/evaluation.md, "Sequences")
+namespace cairn::input {
 
-struct SequenceOptions {
+struct ScoreOptions {
   int min_area = 200;      // px; smaller true objects are ignored
   bool tentative = false;  // unconfirmed tracks count too
 };
@@ -79,7 +79,7 @@ struct SequenceScores {
 };
 
 /// `path`: a folder from `cairn follow`, its tracks.jsonl, or a MOTS text. Throws Error.
-SequenceScores score_sequence(const std::filesystem::path& path, const input::TrueSequence& truth,
-                              const SequenceOptions& options);
+SequenceScores score_sequence(const std::filesystem::path& path, const TrueSequence& truth,
+                              const ScoreOptions& options);
 
-}  // namespace cairn::cli
+}  // namespace cairn::input
