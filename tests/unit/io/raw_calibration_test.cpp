@@ -236,5 +236,24 @@ TEST(Pairs, AreFoundByNamesInFoldersAndAsFrames) {
   }
 }
 
+TEST(Pairs, AreFoundUnderOtherNamesAndBesideHiddenFiles) {
+  const TemporaryFolder folder;
+  for (const char* name : {"tartan/image_left/000_left.png", "tartan/image_right/000_right.png",
+                           "upper/Left/1.png", "upper/Right/1.png", "short/a_L.png", "short/a_R.png",
+                           "mac/left00.pgm", "mac/right00.pgm", "mac/._left00.pgm", "mac/._right00.pgm",
+                           "lone/left/1.pgm", "lone/right/1.pgm", "lone/left/2.pgm", "lone/left/3.pgm"})
+    (void)folder.with(name, "");
+  const fs::path root = folder.path();
+  EXPECT_EQ(io::find_frames(root / "tartan")[0].right, root / "tartan" / "image_right" / "000_right.png");
+  EXPECT_EQ(io::find_frames(root / "upper")[0].right, root / "upper" / "Right" / "1.png");
+  EXPECT_EQ(io::find_frames(root / "short")[0].right, root / "short" / "a_R.png");
+  ASSERT_EQ(io::find_frames(root / "mac").size(), 1U);
+  EXPECT_EQ(io::find_frames(root / "mac")[0].name, "left00");
+  std::vector<fs::path> alone;
+  EXPECT_EQ(io::find_frames(root / "lone", io::Cameras::rectified, &alone).size(), 1U);
+  EXPECT_EQ(alone,
+            (std::vector<fs::path>{root / "lone" / "left" / "2.pgm", root / "lone" / "left" / "3.pgm"}));
+}
+
 }  // namespace
 }  // namespace cairn
