@@ -133,9 +133,8 @@ FrameList paired_by_stamps(const Side& left, const Side& right, const SourceOpti
   FrameList list =
       paired(left, right, pair_by_stamps(*left.stamps, *right.stamps, options.max_skew_ms), options);
   if (!list.frames.empty()) return list;
-  throw Error(left.stamps_from + ": no left and right image are within " +
-              std::to_string(std::lround(options.max_skew_ms)) + " ms; the first stamps are " +
-              stamp_text(left.stamps->front()) + " and " + stamp_text(right.stamps->front()));
+  throw Error(left.stamps_from + ": " +
+              skew_text(left.stamps->front(), right.stamps->front(), options.max_skew_ms));
 }
 
 /// Pairs by keys present on both sides, such as names or numbers. Both sides are sorted.

@@ -66,6 +66,9 @@ class McapSequence : public SourceSequence {
     reader_.only(wanted);
     first_ = McapSequence::advance();
     if (!first_) {
+      const auto& [left, right] = first_stamps_;
+      if (left && right && !remarks_.empty() && remarks_.front().what.find("without a") != std::string::npos)
+        throw Error(file_.string() + ": " + skew_text(*left, *right, options.max_skew_ms));
       if (!remarks_.empty())
         throw Error(file_.string() + ": " + remarks_.front().what + ": " + remarks_.front().first);
       throw Error(file_.string() + (options.frames.first > 0
@@ -217,6 +220,7 @@ class McapSequence : public SourceSequence {
     } catch (const Error& error) {
       waiting.trouble = error.what();
     }
+    if (!first_stamps_[side]) first_stamps_[side] = stamp;
     pairing_.push(side, stamp, std::move(waiting));
   }
   void take_grey(const ros::McapMessage& message) {
@@ -314,6 +318,7 @@ class McapSequence : public SourceSequence {
   ros::McapReader reader_;
   std::array<Side, 2> sides_;
   Pairing pairing_;
+  std::array<std::optional<Stamp>, 2> first_stamps_;
   std::optional<std::uint16_t> grey_;
   std::deque<std::pair<Stamp, io::Raster>> greys_;
   std::size_t pairs_ = 0;

@@ -40,7 +40,7 @@ io::Raster raster_of(const ros::Image& image) {
       std::ranges::find_if(kEncodings, [&](const Encoding& e) { return image.encoding == e.name; });
   if (encoding == kEncodings.end()) {
     throw Error("has the encoding " + image.encoding +
-                ", expected mono8, mono16, rgb8, bgr8, rgba8 or bgra8 (debayer others first)");
+                ", expected mono8, mono16, rgb8, bgr8, rgba8 or bgra8 (convert others first)");
   }
   io::check_sides(image.width, image.height);
   const std::size_t pixel = encoding->channels * static_cast<std::size_t>(encoding->bytes_each);

@@ -3,6 +3,7 @@
 #include <cairn/input/sequence.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/io/read_file.hpp>
 #include <filesystem>
@@ -171,6 +172,22 @@ std::unique_ptr<Sequence> open_pair(const std::string& left, const std::string& 
   return std::make_unique<FileSequence>(name_of(left), list_two(left, right, options), options, pool);
 }
 
+/// Recordings that only their makers' programs read.
+void refuse_other_recording(const std::string& source) {
+  struct Known {
+    const char* extension;
+    const char* what;
+  };
+  constexpr std::array kKnown{
+      Known{".db3", "a ROS 2 recording in SQLite, expected MCAP (ros2 bag convert, storage_id: mcap)"},
+      Known{".bag", "a recording of ROS 1 or a RealSense, expected MCAP (for ROS 1: mcap convert)"},
+      Known{".svo", "a recording of the ZED, expected images or a video (ZED_SVO_Export)"},
+      Known{".svo2", "a recording of the ZED, expected images or a video (ZED_SVO_Export)"}};
+  for (const auto& [extension, what] : kKnown) {
+    if (fs::path(source).extension() == extension) throw Error(source + ": is " + what);
+  }
+}
+
 }  // namespace
 
 FrameRange parse_frame_range(std::string_view text) {
@@ -235,6 +252,7 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
     throw Error(source + ": not found, expected a folder of frames, a video, or LEFT,RIGHT");
   }
   if (!io::is_folder(source)) {
+    refuse_other_recording(source);
     if (options.layout.empty()) {
       throw Error(source +
                   ": is one file, expected --layout side_by_side or top_bottom for a video with both images, "

@@ -433,7 +433,7 @@ TEST(RosImages, RefusesInvalidImages) {
   other.encoding = "bayer_rggb8";
   EXPECT_EQ(
       message_of([&] { images(sound, other); }),
-      "/r: has the encoding bayer_rggb8, expected mono8, mono16, rgb8, bgr8, rgba8 or bgra8 (debayer others "
+      "/r: has the encoding bayer_rggb8, expected mono8, mono16, rgb8, bgr8, rgba8 or bgra8 (convert others "
       "first)");
   other = sound;
   other.data.pop_back();
