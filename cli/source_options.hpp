@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cairn/input/sequence.hpp>
 #include <string>
+
 #include "common.hpp"
 
 namespace cairn::cli {

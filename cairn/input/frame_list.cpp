@@ -12,6 +12,7 @@
 #include <map>
 #include <system_error>
 
+#include <cairn/input/frame_watch.hpp>
 #include <cairn/io/names_and_numbers.hpp>
 #include <cairn/sequence/stamps.hpp>
 
