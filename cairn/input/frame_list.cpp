@@ -9,10 +9,10 @@
 #include <cairn/io/frame_names.hpp>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <system_error>
 
-#include <cairn/input/frame_watch.hpp>
 #include <cairn/io/names_and_numbers.hpp>
 #include <cairn/sequence/stamps.hpp>
 
@@ -368,6 +368,15 @@ FrameList list_frames(const fs::path& source, const std::vector<io::FrameFiles>&
 }
 
 }  // namespace
+
+std::string skew_text(Stamp left, Stamp right, double max_skew_ms) {
+  std::array<char, 128> skew{};
+  std::snprintf(skew.data(), skew.size(),
+                "no left and right image are within %g ms; the first are %g ms apart", max_skew_ms,
+                std::abs(seconds_between(left, right)) * 1000);
+  return std::string(skew.data()) + " (" + stamp_text(left) + " and " + stamp_text(right) +
+         "): --max-skew MS";
+}
 
 FrameList list_folder(const fs::path& folder, const SourceOptions& options) {
   if (const std::optional<fs::path> camera = euroc_camera_in(folder))

@@ -32,6 +32,9 @@ struct FrameList {
   std::vector<SourceRemark> remarks;
 };
 
+/// Why no images are paired, with what would pair the first of them. The stamps are those of the first on either side.
+std::string skew_text(Stamp left, Stamp right, double max_skew_ms);
+
 /// The frames of a folder within options.frames. Throws Error.
 FrameList list_folder(const std::filesystem::path& folder, const SourceOptions& options);
 /// The frames of two folders of images, or of two patterns such as left_%04d.png.

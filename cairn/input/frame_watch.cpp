@@ -2,11 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/input/frame_watch.hpp>
 
-#include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/io/raw_calibration.hpp>
-#include <cmath>
-#include <cstdio>
 #include <string_view>
 
 #include <cairn/input/frame_list.hpp>
@@ -81,15 +78,6 @@ SourceCalibration open_calibration(const SourceOptions& options, const std::opti
     calibration.says = io::load_calibration(calibration.path, grey_cameras);
   }
   return calibration;
-}
-
-std::string skew_text(Stamp left, Stamp right, double max_skew_ms) {
-  std::array<char, 128> skew{};
-  std::snprintf(skew.data(), skew.size(),
-                "no left and right image are within %g ms; the first are %g ms apart", max_skew_ms,
-                std::abs(seconds_between(left, right)) * 1000);
-  return std::string(skew.data()) + " (" + stamp_text(left) + " and " + stamp_text(right) +
-         "): --max-skew MS";
 }
 
 void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks) {

@@ -44,9 +44,6 @@ SourceCalibration open_calibration(const SourceOptions& options,
                                    const std::optional<std::filesystem::path>& found, bool grey_cameras,
                                    bool is_raw, const std::function<Size()>& image_size = {});
 
-/// Why no images are paired, with what would pair the first of them. The stamps are those of the first on either side.
-std::string skew_text(Stamp left, Stamp right, double max_skew_ms);
-
 /// Checks every frame of a source, in order.
 class FrameWatch {
  public:
