@@ -28,8 +28,10 @@ constexpr double kRounding = 1e-3;
 /// suffer: distances use fx.
 constexpr double kSameFocal = 1e-2;
 
-void check_same_focal(double a, const char* name_a, double b, const char* name_b) {
-  if (std::abs(a - b) <= kSameFocal * std::abs(a)) return;
+/// `tolerance`: relative; between the two cameras only rounding, since disparities would suffer.
+void check_same_focal(double a, const char* name_a, double b, const char* name_b,
+                      double tolerance = kRounding) {
+  if (std::abs(a - b) <= tolerance * std::abs(a)) return;
   throw Error(std::string(name_a) + " is " + written(a) + ", " + name_b + " is " + written(b) +
               "; a rectified pair has one focal length");
 }
@@ -217,7 +219,7 @@ Calibration judged(const Statement& says) {
   check_positive(says.fx, "the focal length (fx)");
   check_positive(says.fy, "the focal length (fy)");
   check_positive(says.baseline_m, "the baseline in metres");
-  if (says.fx && says.fy) check_same_focal(*says.fx, "fx", *says.fy, "fy");
+  if (says.fx && says.fy) check_same_focal(*says.fx, "fx", *says.fy, "fy", kSameFocal);
   Calibration calibration;
   const std::optional<double> focal = says.fx ? says.fx : says.fy;
   if (focal && says.baseline_m) {
