@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <array>
 #include <cairn/core/parallel.hpp>
 #include <cairn/diagnosis/correspondences.hpp>
 #include <cairn/image/sparse_points.hpp>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <optional>
 
@@ -140,6 +142,41 @@ std::optional<Point> most_alike(const Level& from, Point p, const Level& in, Sco
   return Point{scores.places.x + at.x, scores.places.y + at.y};
 }
 
+struct Levels {
+  double mean = 0;
+  double deviation = 0;
+};
+Levels levels_of(View<const Gray> image) {
+  std::int64_t sum = 0;
+  std::int64_t squares = 0;
+  for (int y = 0; y < image.height(); ++y) {
+    const Gray* row = image.row(y);
+    for (int x = 0; x < image.width(); ++x) {
+      sum += row[x];
+      squares += row[x] * row[x];
+    }
+  }
+  const auto area = static_cast<double>(image.size().area());
+  const double mean = static_cast<double>(sum) / area;
+  return {mean, std::sqrt(std::max(0.0, static_cast<double>(squares) / area - mean * mean))};
+}
+
+/// The image with mean and contrast of the other one; empty if its contrast is not clearly weaker.
+Image<Gray> stretched(View<const Gray> image, Levels own, Levels other, const Exec& exec) {
+  constexpr double kUnequal = 1.5;
+  if (!(own.deviation > 0) || other.deviation < kUnequal * own.deviation) return {};
+  std::array<Gray, 256> to{};
+  for (std::size_t level = 0; level < to.size(); ++level) {
+    const double value =
+        other.mean + (static_cast<double>(level) - own.mean) * other.deviation / own.deviation;
+    to[level] = static_cast<Gray>(std::clamp(std::lround(value), 0L, 255L));
+  }
+  Image<Gray> made(image.size(), exec.pool);
+  for (int y = 0; y < image.height(); ++y)
+    std::transform(image.row(y), image.row(y) + image.width(), made.row(y), [&](Gray g) { return to[g]; });
+  return made;
+}
+
 /// An image pyramid, from full size to the coarsest level.
 class Pyramid {
  public:
@@ -194,8 +231,12 @@ std::optional<Correspondence> follow_either(const Pyramid& left, const Pyramid& 
 }  // namespace
 
 Correspondences find_correspondences(const StereoPair& pair, const Exec& exec) {
-  const Pyramid left(pair.left(), exec);
-  const Pyramid right(pair.right(), exec);
+  const Levels levels_left = levels_of(pair.left());
+  const Levels levels_right = levels_of(pair.right());
+  const Image<Gray> brighter_left = stretched(pair.left(), levels_left, levels_right, exec);
+  const Image<Gray> brighter_right = stretched(pair.right(), levels_right, levels_left, exec);
+  const Pyramid left(brighter_left.empty() ? pair.left() : brighter_left.view(), exec);
+  const Pyramid right(brighter_right.empty() ? pair.right() : brighter_right.view(), exec);
   std::size_t start = left.levels() - 1;
   std::vector<Point> points = sparse::textured_points(left.at(start), kMaxPoints, exec);
   if (points.size() < kEnoughPoints && start > 0 && left.at(start - 1).width() <= kFineWidth)

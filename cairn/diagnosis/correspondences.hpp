@@ -34,7 +34,8 @@ inline constexpr float kMaxRowsOff = 0.125F;
 /// epipolar lines or the sign of the disparity. Windows are correlated (zero mean, normalised) in images of
 /// at most 400 columns (the next finer scale if these show little texture). A match is kept if no other place
 /// is nearly as similar and the search from the right image leads back to it; it is then refined to subpixel
-/// accuracy at full resolution.
+/// accuracy at full resolution. If the contrast of the images differs by half or more, the weaker one is stretched
+/// first: the refinement compares grey levels.
 Correspondences find_correspondences(const StereoPair& pair, const Exec& exec);
 
 }  // namespace cairn

@@ -105,6 +105,19 @@ bool check_same(Case& c) {
   return true;
 }
 
+/// True if the points move along columns, as between cameras one above the other.
+bool check_columns(Case& c) {
+  if (!c.measures.vertical_rows || c.measures.identical) return false;
+  const auto rows = static_cast<double>(*c.measures.vertical_rows);
+  // Rotated counter-clockwise, a column becomes a row, its top the left end.
+  c.add(
+      FindingKind::one_above_other, Severity::broken, rows,
+      "the points move along the columns, by " + text_of("%+.1f rows", rows) +
+          " from left to right image (median), and hardly along the rows: rotate both images by 90 degrees " +
+          (rows < 0 ? "counter-clockwise" : "clockwise"));
+  return true;
+}
+
 /// True if nearly all disparities are negative and outside the range, but inside it after exchanging the
 /// images. With doffs > 0 negative disparities are valid, but a positive range does not expect them.
 bool fits_exchanged(const Case& c) {
@@ -116,13 +129,15 @@ bool fits_exchanged(const Case& c) {
          100 * inside_exchanged >= static_cast<double>(c.config.break_swapped);
 }
 
-/// True if the cameras are not swapped.
+/// True if the cameras are not swapped. Where the calibration allows both orders (cameras that converge, with a
+/// doffs), what is nearer decides: the lower part of the image is, as a rule.
 bool check_order(Case& c) {
   const double doffs = c.rig ? static_cast<double>(c.rig->doffs_px) : 0.0;
   const double negative = c.share_below(-1);
   const double impossible = c.share_below(std::min(0.0, -doffs) - 1);
   const auto limit = static_cast<double>(c.config.break_swapped);
-  if (100 * impossible < limit && !(100 * negative >= limit && fits_exchanged(c))) return true;
+  const bool is_exchanged = 100 * negative >= limit && fits_exchanged(c) && c.measures.nearer_below < 0;
+  if (100 * impossible < limit && !is_exchanged) return true;
   c.add(FindingKind::swapped, Severity::broken, 100 * negative,
         percent_text(negative) + " of " + std::to_string(c.measures.disparities_px.size()) +
             " points have a negative disparity, median " + text_of("%+.1f px", c.measures.disparity_px(0.5)));
@@ -228,6 +243,15 @@ void check_infinity(Case& c) {
 Camera camera_of(bool left, bool right) {
   if (left == right) return Camera::pair;
   return left ? Camera::left : Camera::right;
+}
+
+void check_border(Case& c) {
+  const auto left = 100 * static_cast<double>(c.measures.left_exposure.border);
+  const auto right = 100 * static_cast<double>(c.measures.right_exposure.border);
+  if (std::max(left, right) < static_cast<double>(c.config.warn_clipped)) return;
+  c.add(FindingKind::border, Severity::note, std::max(left, right),
+        text_of("%.0f %%", left) + " of the left image and " + text_of("%.0f %%", right) +
+            " of the right one are black borders");
 }
 
 void check_clipping(Case& c) {
@@ -347,13 +371,13 @@ void check_distances(Case& c) {
             text_of("%.3g m if that is in centimetres: metres are expected", nearest / 100));
 }
 
-/// The disparities similar to that of one of the nearest points. False matches are rarely similar to their
-/// neighbours.
-std::vector<float> supported_disparities(const std::vector<Correspondence>& points) {
+/// The points with a disparity similar to that of one of the nearest points, by ascending disparity. False matches
+/// are rarely similar to their neighbours.
+std::vector<Correspondence> supported_ones(const std::vector<Correspondence>& points) {
   constexpr std::size_t kNeighbours = 4;
   constexpr float kAlike = 0.15F;
   constexpr float kAlikePx = 3;
-  std::vector<float> supported;
+  std::vector<Correspondence> supported;
   std::vector<std::pair<float, float>> nearest;  // squared distance, disparity
   for (const Correspondence& c : points) {
     nearest.clear();
@@ -368,10 +392,63 @@ std::vector<float> supported_disparities(const std::vector<Correspondence>& poin
     int alike = 0;
     for (std::size_t i = 0; i < count; ++i)
       alike += std::abs(nearest[i].second - c.disparity()) <= tolerance ? 1 : 0;
-    if (alike > 1) supported.push_back(c.disparity());  // the count includes the point itself
+    if (alike > 1) supported.push_back(c);  // the count includes the point itself
   }
-  std::sort(supported.begin(), supported.end());
+  std::sort(supported.begin(), supported.end(),
+            [](const Correspondence& a, const Correspondence& b) { return a.disparity() < b.disparity(); });
   return supported;
+}
+
+/// Pearson's correlation of row and disparity; 0 if one of them does not vary.
+float nearer_below(const std::vector<Correspondence>& points) {
+  double n = 0;
+  double y = 0;
+  double d = 0;
+  double yy = 0;
+  double yd = 0;
+  double dd = 0;
+  for (const Correspondence& c : points) {
+    const auto row = static_cast<double>(c.y_left);
+    const auto disparity = static_cast<double>(c.disparity());
+    n += 1;
+    y += row;
+    d += disparity;
+    yy += row * row;
+    yd += row * disparity;
+    dd += disparity * disparity;
+  }
+  const double spread = (n * yy - y * y) * (n * dd - d * d);
+  return spread > 0 ? static_cast<float>((n * yd - y * d) / std::sqrt(spread)) : 0.0F;
+}
+
+/// PairMeasures::vertical_rows: all points move by much along the columns and by nothing along the rows, or by far
+/// more different amounts.
+std::optional<float> rows_of_vertical(const std::vector<Correspondence>& points) {
+  constexpr std::size_t kMinPoints = 30;
+  constexpr float kStill = 1;      // px along the rows
+  constexpr float kMoved = 4.5F;   // rows; beyond what the epipolar correction undoes
+  constexpr float kRatio = 4;      // of the spreads
+  constexpr float kMinSpread = 2;  // rows
+  if (points.size() < kMinPoints) return std::nullopt;
+  std::vector<float> along;
+  std::vector<float> down;
+  for (const Correspondence& c : points) {
+    along.push_back(c.disparity());
+    down.push_back(c.rows());
+  }
+  std::sort(along.begin(), along.end());
+  std::sort(down.begin(), down.end());
+  const auto tenths = [&](const std::vector<float>& sorted, std::size_t k) {
+    return sorted[k * (sorted.size() - 1) / 10];
+  };
+  const float spread_along = tenths(along, 8) - tenths(along, 2);
+  const float spread_down = tenths(down, 8) - tenths(down, 2);
+  const float rows = tenths(down, 5);
+  const bool is_still = spread_along <= kStill && std::abs(tenths(along, 5)) <= kStill;
+  const bool is_of_one_sign = tenths(down, 1) * tenths(down, 9) > 0;
+  const bool is_deep = spread_down >= std::max(kMinSpread, kRatio * spread_along) && is_of_one_sign;
+  if (!(is_still && std::abs(rows) >= kMoved) && !is_deep) return std::nullopt;
+  return rows;
 }
 
 /// A sample of a few thousand disparities, ascending.
@@ -412,7 +489,10 @@ PairMeasures measure_pair(const StereoPair& pair, const Exec& exec) {
   measures.identical = are_equal(pair.left(), pair.right());
   measures.textured_points = found.points;
   measures.rows = measure_row_alignment(found);
-  measures.disparities_px = supported_disparities(agreeing.list);
+  const std::vector<Correspondence> supported = supported_ones(agreeing.list);
+  for (const Correspondence& c : supported) measures.disparities_px.push_back(c.disparity());
+  measures.nearer_below = nearer_below(supported);
+  measures.vertical_rows = rows_of_vertical(found.list);
   measures.brightness = measure_brightness_difference(pair, agreeing);
   measures.left_exposure = measure_exposure(pair.left());
   measures.right_exposure = measure_exposure(pair.right());
@@ -425,7 +505,7 @@ std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<
                               const MatchConfig& range, const DiagnosisConfig& config) {
   Case c{measures, rig, range, config};
   check_camera(c);
-  if (!check_same(c) && check_points(c)) {
+  if (!check_columns(c) && !check_same(c) && check_points(c)) {
     if (is_certain(measures, config) && check_order(c)) {
       check_distances(c);
       check_range(c);
@@ -434,6 +514,7 @@ std::vector<Finding> diagnose(const PairMeasures& measures, const std::optional<
     check_rows(c);
     check_brightness(c);
   }
+  check_border(c);
   check_clipping(c);
   check_contrast(c);
   check_sharpness(c);
@@ -500,6 +581,7 @@ std::vector<Finding> diagnose(const Frame& frame, View<const Gray> left, View<co
     check_rows(c);
     if (!right.empty()) check_end_of_range(c, frame.disparity);
   }
+  check_border(c);
   check_clipping(c);
   check_contrast(c);
   check_floor(c, frame);

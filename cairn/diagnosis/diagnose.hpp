@@ -100,6 +100,11 @@ struct PairMeasures {
   int textured_points = 0;  // of the left image
   RowAlignment rows;
   std::vector<float> disparities_px;  // of consistent points with similar neighbours, ascending
+  // Correlation of these disparities with the row: the floor makes it positive, and negative if the cameras are
+  // swapped; 0 if unknown.
+  float nearer_below = 0;
+  // If the points move along columns rather than rows: their median y_right − y_left.
+  std::optional<float> vertical_rows;
   BrightnessDifference brightness;
   Exposure left_exposure;
   Exposure right_exposure;

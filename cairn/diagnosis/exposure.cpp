@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
 #include <array>
 #include <cairn/diagnosis/exposure.hpp>
 #include <cairn/diagnosis/robust_fit.hpp>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
+#include <vector>
 
 namespace cairn {
 namespace {
@@ -19,6 +22,52 @@ int level_below(const std::array<std::int64_t, kLevels>& counts, std::int64_t pi
     if (sum > pixels) return static_cast<int>(level);
   }
   return kLevels - 1;
+}
+
+/// For each line of the image, the number of black pixels up to its first other one. All 0 if the ends of these
+/// runs do not form a smooth line, as in a scene that is dark at the side.
+template <class IsBlack>
+std::vector<int> runs(int lines, int length, IsBlack is_black) {
+  std::vector<int> all(static_cast<std::size_t>(lines), 0);
+  for (int i = 0; i < lines; ++i) {
+    int& run = all[static_cast<std::size_t>(i)];
+    while (run < length && is_black(i, run)) ++run;
+  }
+  constexpr int kSmooth = 2;  // px from line to line; a steeper border is smooth along the other side
+  int reaching = 0;
+  int jumps = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    reaching += all[i] > 0 ? 1 : 0;
+    jumps += i > 0 && std::abs(all[i] - all[i - 1]) > kSmooth ? 1 : 0;
+  }
+  if (20 * jumps > reaching) std::fill(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// The width of the border at each side, by row or column.
+struct Border {
+  std::vector<int> left;
+  std::vector<int> right;
+  std::vector<int> top;
+  std::vector<int> bottom;
+  [[nodiscard]] bool contains(int x, int y) const {
+    const auto column = static_cast<std::size_t>(x);
+    const auto row = static_cast<std::size_t>(y);
+    const int width = static_cast<int>(top.size());
+    const int height = static_cast<int>(left.size());
+    return x < left[row] || x >= width - right[row] || y < top[column] || y >= height - bottom[column];
+  }
+};
+
+Border border_of(View<const Gray> image) {
+  constexpr int kBlack = 1;
+  const int w = image.width();
+  const int h = image.height();
+  const auto is_black = [&](int x, int y) { return image(x, y) <= kBlack; };
+  return {runs(h, w, [&](int y, int i) { return is_black(i, y); }),
+          runs(h, w, [&](int y, int i) { return is_black(w - 1 - i, y); }),
+          runs(w, h, [&](int x, int i) { return is_black(x, i); }),
+          runs(w, h, [&](int x, int i) { return is_black(x, h - 1 - i); })};
 }
 
 constexpr int kRadius = 4;  // px, of the windows to compare
@@ -48,10 +97,32 @@ Exposure measure_exposure(View<const Gray> image) {
     const Gray* row = image.row(y);
     for (int x = 0; x < image.width(); ++x) ++counts[row[x]];
   }
-  const std::int64_t area = image.size().area();
+  std::int64_t area = image.size().area();
+  constexpr double kLeastBorder = 0.02;
+  constexpr double kMostBorder = 0.7;
+  const double black = static_cast<double>(counts[0] + counts[1]) / static_cast<double>(area);
+  float border = 0;
+  if (black >= kLeastBorder) {
+    const Border sides = border_of(image);
+    std::array<std::int64_t, 2> in_border{};  // by level
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 0; x < image.width(); ++x) {
+        if (sides.contains(x, y)) ++in_border[image(x, y)];
+      }
+    }
+    const std::int64_t pixels = in_border[0] + in_border[1];
+    const double share = static_cast<double>(pixels) / static_cast<double>(area);
+    if (share >= kLeastBorder && share <= kMostBorder) {
+      border = static_cast<float>(share);
+      counts[0] -= in_border[0];
+      counts[1] -= in_border[1];
+      area -= pixels;
+    }
+  }
   const auto share = [&](std::int64_t count) { return static_cast<float>(count) / static_cast<float>(area); };
   return {share(counts[0] + counts[1]), share(counts[254] + counts[255]),
-          static_cast<float>(level_below(counts, area - 1 - area / 100) - level_below(counts, area / 100))};
+          static_cast<float>(level_below(counts, area - 1 - area / 100) - level_below(counts, area / 100)),
+          border};
 }
 
 BrightnessDifference measure_brightness_difference(const StereoPair& pair, const Correspondences& agreeing) {

@@ -6,12 +6,15 @@
 
 namespace cairn {
 
-/// The use of the 256 grey levels by one camera.
+/// The use of the 256 grey levels by one camera, without the black border that rectification leaves.
 struct Exposure {
   float black = 0;     // share of the pixels at level 0 or 1
   float white = 0;     // share of the pixels at level 254 or 255
   float contrast = 0;  // grey levels between the 1st and the 99th percentile
+  float border = 0;    // share of the image that is a black border; the other numbers are of the rest
 };
+/// Black pixels count as a border if they reach in from the sides of the image, along a smooth line, and cover
+/// from 2 to 70 % of it.
 Exposure measure_exposure(View<const Gray> image);
 
 /// The difference in brightness of the cameras: right ≈ gain · left + offset.

@@ -23,8 +23,11 @@ enum class FindingKind : std::uint8_t {
   impossible_calibration,
   calibration,
   raw_calibration,
+  no_metres,
+  given_disparity,
   few_points,
   nothing_in_common,
+  one_above_other,
   same_picture,
   swapped,
   synchrony,
@@ -34,6 +37,7 @@ enum class FindingKind : std::uint8_t {
   range_too_small,
   range_too_large,
   behind_infinity,
+  border,
   exposure,
   dark,
   brightness,
@@ -65,6 +69,15 @@ inline constexpr std::array kFindings{
                 "Rectify the images with it (cairn rectify), and use the calib.txt that is written next to "
                 "them."},
     FindingInfo{
+        FindingKind::no_metres, "no metres", "baseline", "m",
+        "Give the calibration (--calib), with a baseline; a recording and topics need the camera_info of "
+        "both cameras."},
+    FindingInfo{
+        FindingKind::given_disparity, "no disparity of these images",
+        "points at which the given disparity fits both images", "%",
+        "Give the disparities of the left image in px, not depth: in a PNG px * 256, in a PFM the lowest "
+        "row first."},
+    FindingInfo{
         FindingKind::few_points, "too little texture", "textured points found in both images", "points",
         "Point the cameras at a textured scene in good light, and run the doctor again: this pair does "
         "not suffice to judge rows, order and range."},
@@ -72,6 +85,11 @@ inline constexpr std::array kFindings{
                 "%",
                 "Check that both images show the same scene at the same moment, neither upside down nor "
                 "mirrored; then, that the pair was rectified (cairn rectify)."},
+    FindingInfo{
+        FindingKind::one_above_other, "cameras one above the other", "median row difference of the points",
+        "rows",
+        "Rotate both images as the message says, and calibrate the rotated ones; if the cameras are side "
+        "by side, their images are turned, or their rows are far from rectified (cairn rectify)."},
     FindingInfo{FindingKind::same_picture, "identical images", "points with a disparity of 0", "%",
                 "Give the image of each camera: check whether both names lead to one file, and whether both "
                 "drivers open one camera."},
@@ -106,6 +124,10 @@ inline constexpr std::array kFindings{
         FindingKind::behind_infinity, "points behind infinity", "points with d + doffs below -1 px", "%",
         "Check doffs in the calibration (cx of the right camera minus cx of the left one), and whether the "
         "rectification shifts one image."},
+    FindingInfo{
+        FindingKind::border, "black borders", "pixels of the border", "%",
+        "Nothing to fix: rectification leaves them where the camera saw nothing. A smaller field of view, "
+        "or cropping both images alike, saves the time that they cost."},
     FindingInfo{
         FindingKind::exposure, "clipped exposure", "pixels at the first or last grey level", "%",
         "Shorten (white) or lengthen (black) the exposure, or lower the gain: clipped areas cannot be "

@@ -27,11 +27,11 @@ CAIRN_MEMBERS(ObjectSummary, frames, true_objects, _found_50, _found_75, _missed
               _under_segmented, mean_error, median_error, mean_iou, mean_boundary_f, _mean_boundary_f_found,
               _complete_frames, our_objects, _right_50, _right_75, phantoms)
 CAIRN_MEMBERS(RowAlignment, _points, _offset, _slope, _agreeing, _left_over, _histogram)
-CAIRN_MEMBERS(Exposure, _black, _white, _contrast)
+CAIRN_MEMBERS(Exposure, _black, _white, _contrast, _border)
 CAIRN_MEMBERS(BrightnessDifference, _points, _gain, _offset, _median)
 CAIRN_MEMBERS(Sharpness, _edges, _edge)
-CAIRN_MEMBERS(PairMeasures, size, identical, _textured_points, _rows, _disparities, _brightness,
-              _left_exposure, _right_exposure, _left_sharpness, _right_sharpness)
+CAIRN_MEMBERS(PairMeasures, size, identical, _textured_points, _rows, _disparities, _nearer_below,
+              _vertical_rows, _brightness, _left_exposure, _right_exposure, _left_sharpness, _right_sharpness)
 CAIRN_MEMBERS(LagChange, _from, _before, _after, _motion)
 CAIRN_TUPLE(TuneConfig, options, budget_s, evaluations, holdout, seed)
 CAIRN_MEMBERS(Synchrony, _frames, _motion, _agreement, _left_repeats, _right_repeats, _change)

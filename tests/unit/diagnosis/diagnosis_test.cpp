@@ -155,6 +155,114 @@ TEST_F(Diagnosis, DetectsSwappedCamerasIfDoffsAllowsNegativeDisparities) {
   EXPECT_EQ(names(findings(right(), left())), "");
 }
 
+/// Rotated by 90 degrees: column x becomes the row x from the top, or from the bottom.
+Image<Gray> rotated(View<const Gray> image, bool clockwise) {
+  Image<Gray> result({image.height(), image.width()});
+  for (int y = 0; y < result.height(); ++y) {
+    for (int x = 0; x < result.width(); ++x)
+      result(x, y) = clockwise ? image(y, image.height() - 1 - x) : image(image.width() - 1 - y, x);
+  }
+  return result;
+}
+
+TEST_F(Diagnosis, DetectsCamerasOneAboveTheOtherAndSaysHowToRotate) {
+  rig_.reset();
+  for (const char* name : samples::kNames) {
+    const samples::Sample sample = samples::load(name);
+    for (const bool clockwise : {false, true}) {
+      const auto l = rotated(sample.images.left.gray, clockwise);
+      const auto r = rotated(sample.images.right.gray, clockwise);
+      const auto found = findings(l, r);
+      ASSERT_FALSE(found.empty()) << name;
+      EXPECT_EQ(info(found[0].kind).name, "cameras one above the other") << name << found[0].says;
+      EXPECT_EQ(static_cast<int>(found[0].severity), static_cast<int>(Severity::broken));
+      const char* back =
+          clockwise ? "rotate both images by 90 degrees counter-clockwise" : "90 degrees clockwise";
+      EXPECT_NE(says(found).find(back), std::string::npos) << says(found);
+    }
+  }
+}
+
+TEST_F(Diagnosis, DetectsCamerasOneAboveTheOtherBeforeAPlane) {
+  rig_.reset();
+  const auto lower = made_of(
+      left(),
+      [](int x, int y) {
+        return Place{double(x), y - 8.0};
+      },
+      same_tone);
+  finds(findings(left(), lower), FindingKind::one_above_other, Severity::broken);
+}
+
+TEST_F(Diagnosis, MatchesImagesOfVeryUnequalExposure) {
+  for (const char* name : {"four_in_a_row", "overlap"}) {
+    const samples::Sample sample = samples::load(name);
+    rig_ = sample.calibration.rig;
+    range_ = sample.suited().match;
+    const auto dark_right = toned(sample.images.right.gray, 0.25, 0);
+    EXPECT_EQ(names(findings(sample.images.left.gray, dark_right)).find("images do not match"),
+              std::string::npos);
+    const BrightnessDifference measured =
+        measure_pair(StereoPair::from(sample.images.left.gray, dark_right), {}).brightness;
+    EXPECT_TRUE(measured.is_measured());
+    EXPECT_NEAR(static_cast<double>(measured.gain), 0.25, 0.04);
+    EXPECT_NE(names(findings(sample.images.left.gray, dark_right)).find("unequal brightness"),
+              std::string::npos);
+    const auto dark_left = toned(sample.images.left.gray, 0.25, 0);
+    EXPECT_NE(names(findings(dark_left, sample.images.right.gray)).find("unequal brightness"),
+              std::string::npos);
+  }
+}
+
+TEST_F(Diagnosis, DoesNotCallConvergingCamerasSwapped) {
+  for (const char* name : samples::kNames) {
+    const samples::Sample sample = samples::load(name);
+    rig_ = sample.calibration.rig;
+    range_ = sample.suited().match;
+    // Turned towards each other, which moves all points of the right image to the right: all disparities are
+    // negative, and doffs makes up for it.
+    const int towards = range_.num_disparities + 8;
+    const auto turned = made_of(
+        sample.images.right.gray,
+        [=](int x, int y) {
+          return Place{double(x - towards), double(y)};
+        },
+        same_tone);
+    rig_->doffs_px += static_cast<float>(towards);
+    const auto found = findings(sample.images.left.gray, turned);
+    EXPECT_EQ(names(found).find("cameras swapped"), std::string::npos) << name << ": " << names(found);
+    EXPECT_NE(names(found).find("disparity range too small"), std::string::npos)
+        << name << ": " << names(found);
+  }
+}
+
+TEST_F(Diagnosis, DoesNotCallTheBlackBordersOfRectificationAFault) {
+  // The border of a distorted and rotated image: a fifth of the width at the sides, less above and below.
+  const auto bordered = [](View<const Gray> image) {
+    Image<Gray> result(image.size());
+    const double w = image.width();
+    const double h = image.height();
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 0; x < image.width(); ++x) {
+        const double u = 2 * x / w - 1;
+        const double v = 2 * y / h - 1;
+        const bool is_seen = std::abs(u + 0.05 * v) < 0.72 + 0.1 * v * v && std::abs(v) < 0.9 - 0.1 * u * u;
+        result(x, y) = is_seen ? std::max<Gray>(image(x, y), 2) : Gray{0};
+      }
+    }
+    return result;
+  };
+  const auto found = findings_of_both(bordered);
+  finds(found, FindingKind::border, Severity::note);
+  const Image<Gray> image = bordered(left());
+  const Exposure measured = measure_exposure(image);
+  EXPECT_GT(measured.border, 0.3F);
+  EXPECT_LT(measured.black, 0.03F);
+  // What is dark in the scene is none.
+  const auto dark = [](View<const Gray> scene) { return toned(scene, 2, -180); };
+  EXPECT_NE(names(findings_of_both(dark)).find("clipped exposure"), std::string::npos);
+}
+
 TEST_F(Diagnosis, MeasuresAVerticalShift) {
   for (const double rows : {-2.0, 1.25, 3.0}) {
     const auto lower = made_of(
