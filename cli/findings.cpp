@@ -3,6 +3,7 @@
 #include "findings.hpp"
 
 #include <algorithm>
+#include <cairn/core/error.hpp>
 #include <iostream>
 #include <string_view>
 
@@ -28,6 +29,29 @@ std::string frames_text(const Finding& finding, const std::vector<std::string>& 
   return all + (finding.frames.size() > kNamed ? ", ...)" : ")");
 }
 
+namespace {
+
+/// "cairn: broken: cameras swapped: 98 % of …, in 2 of 5 frames. Exchange the two images."
+std::string line_of(const Finding& finding, const std::string& where) {
+  const std::string_view remedy = info(finding.kind).remedy;
+  return "cairn: " + name_of(finding.severity) + ": " + std::string(info(finding.kind).name) + ": " +
+         finding.says + where + (finding.says.ends_with('?') && where.empty() ? " " : ". ") +
+         std::string(remedy.substr(0, remedy.find(". "))) + (remedy.find(". ") < remedy.size() ? "." : "") +
+         "\n";
+}
+
+}  // namespace
+
+std::string changes_text(const std::string& frame, const std::vector<FindingChange>& changes) {
+  std::string text;
+  for (const auto& [finding, is_gone] : changes) {
+    text += is_gone ? "cairn: note: no longer found: " + std::string(info(finding.kind).name) + ", in " +
+                          on_one_line(frame) + "\n"
+                    : line_of(finding, ", in " + on_one_line(frame));
+  }
+  return text;
+}
+
 void PassingFindings::add(const std::string& frame, std::vector<Finding> findings) {
   names_.push_back(frame);
   of_frames_.push_back(std::move(findings));
@@ -35,13 +59,8 @@ void PassingFindings::add(const std::string& frame, std::vector<Finding> finding
 
 void PassingFindings::tell() const {
   std::cout.flush();
-  for (const Finding& finding : united(of_frames_)) {
-    const std::string_view remedy = info(finding.kind).remedy;
-    std::cerr << "cairn: " << name_of(finding.severity) << ": " << info(finding.kind).name << ": "
-              << finding.says << frames_text(finding, names_, "frames")
-              << (finding.says.ends_with('?') ? " " : ". ") << remedy.substr(0, remedy.find(". "))
-              << (remedy.find(". ") < remedy.size() ? "." : "") << "\n";
-  }
+  for (const Finding& finding : united(of_frames_))
+    std::cerr << line_of(finding, frames_text(finding, names_, "frames"));
   if (doubtful_ == 0) return;
   std::cerr << "cairn: note: " << doubtful_
             << " more frames have hardly any common rows or disparities; cairn "

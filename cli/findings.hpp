@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <cairn/diagnosis/findings.hpp>
+#include <cairn/diagnosis/rig_watch.hpp>
 #include <string>
 #include <vector>
 
@@ -16,6 +16,9 @@ bool is_broken(const std::vector<Finding>& findings);
 
 /// ", in 2 of 40 pairs (a, b)"; "" for a single frame. `noun`: "pairs" or "frames".
 std::string frames_text(const Finding& finding, const std::vector<std::string>& names, const char* noun);
+
+/// A line for stderr per change of the findings of a run, with its remedy. `frame`: the name of the frame.
+std::string changes_text(const std::string& frame, const std::vector<FindingChange>& changes);
 
 /// The findings of a folder run, reported once for all frames with them.
 class PassingFindings {

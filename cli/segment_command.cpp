@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
-#include <cairn/diagnosis/diagnose.hpp>
+#include <cairn/diagnosis/given_disparity.hpp>
+#include <cairn/diagnosis/rig_watch.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/output/json.hpp>
@@ -174,6 +175,32 @@ void remove_older_page(const fs::path& folder) {
   fs::remove(folder / kPageName, ignored);
 }
 
+/// Compares given disparities with the pairs: of the first frames and of every hundredth, and of all after a map that
+/// was refused.
+class GivenCheck {
+ public:
+  /// Throws Error if the map is certainly none of these images; a finding if it is suspect.
+  std::optional<Finding> check(const LoadedFrame& loaded, const io::FrameFiles& files,
+                               const std::string& name, const Exec& exec) {
+    if (!loaded.given || !files.right) return std::nullopt;
+    const int index = frames_++;
+    if (!was_refused_ && index >= RigWatch::kFrames && index % RigWatch::kEvery != 0) return std::nullopt;
+    was_refused_ = false;
+    const io::LoadedImage right = io::load_picture(*files.right, exec.pool);
+    auto found = check_given_disparity(loaded.given->disparity_px,
+                                       StereoPair::from(loaded.left.gray, right.gray), loaded.rig, exec);
+    was_refused_ = found && found->severity == Severity::broken;
+    if (!was_refused_) return found;
+    const FindingInfo& known = info(found->kind);
+    throw Error("--disparity " + name + ": " + std::string(known.name) + ": " + found->says + ". " +
+                std::string(known.remedy));
+  }
+
+ private:
+  int frames_ = 0;
+  bool was_refused_ = false;
+};
+
 LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, const Exec& exec) {
   LoadedFrame loaded = load_frame(files, options.input, exec);
   for (const auto& [requested, name] : metric_outputs(options)) {
@@ -188,11 +215,12 @@ struct FrameTask {
   std::optional<std::int64_t> stamp_ns;
   const fs::path& folder;  // of its result; may be empty
   bool one_of_many = false;
-  bool may_measure = false;  // its images, if the result is doubtful
+  bool may_measure = false;           // its images, if the result is doubtful
+  std::optional<Finding> of_given{};  // about the given disparity
 };
 
 Report work_on(LoadedFrame loaded, const FrameTask& task, const SegmentOptions& options, Exec& exec) {
-  const auto& [files, stamp_ns, folder, one_of_many, may_measure] = task;
+  const auto& [files, stamp_ns, folder, one_of_many, may_measure, of_given] = task;
   Report report;
   report.remark = loaded.calibration_remarks;
   const Stopwatch watch(exec);
@@ -201,13 +229,11 @@ Report work_on(LoadedFrame loaded, const FrameTask& task, const SegmentOptions& 
                    watch.total_ms()};
   const output::Provenance provenance{
       loaded.preset, loaded.config, loaded.rig, watch.times(), loaded.given.has_value(), stamp_ns};
-  const DiagnosisConfig limits;
-  report.findings = diagnose(frame, loaded.left.gray, loaded.right, loaded.rig, loaded.config, limits);
-  report.is_doubtful = !loaded.given && is_doubtful(frame);
-  if (report.is_doubtful && may_measure) {
-    const PairMeasures measures = measure_pair(StereoPair::from(loaded.left.gray, loaded.right), exec);
-    report.findings = united({diagnose(measures, loaded.rig, loaded.config.match, limits), report.findings});
-  }
+  FrameFindings judged =
+      judge(frame, loaded.left.gray, loaded.right, loaded.rig, loaded.config, may_measure, exec);
+  report.is_doubtful = judged.is_doubtful;
+  if (of_given) judged.list.push_back(*of_given);
+  report.findings = united({judged.list});
   if (!folder.empty()) {
     remove_older_page(options.output);
     output::write_result(folder, loaded.left.gray, loaded.left.rgb, frame, provenance,
@@ -292,6 +318,7 @@ Outcome segment_all(const SegmentOptions& options) {
   std::vector<output::EncodedFrame> encoded;
   std::set<std::string> remarks;
   PassingFindings findings;
+  GivenCheck given;
   std::size_t doubtful = 0;
   bool is_any_broken = false;  // any of the doubtful ones
   SkippedFiles left_out;
@@ -300,8 +327,10 @@ Outcome segment_all(const SegmentOptions& options) {
     progress.at(i, frames[i].name);
     const fs::path folder = result_folder(options, frames[i], many);
     std::optional<LoadedFrame> loaded;
+    std::optional<Finding> of_given;
     try {
       loaded = load(frames[i], options, exec);
+      of_given = given.check(*loaded, frames[i], options.input.disparity, exec);
     } catch (const Error& error) {
       if (frames.size() == 1) throw;
       progress.clear();
@@ -311,7 +340,7 @@ Outcome segment_all(const SegmentOptions& options) {
       continue;
     }
     try {
-      const FrameTask task{frames[i], stamps[i], folder, many, doubtful < kMaxMeasured};
+      const FrameTask task{frames[i], stamps[i], folder, many, doubtful < kMaxMeasured, of_given};
       Report report = work_on(std::move(*loaded), task, options, exec);
       if (options.html) encoded.push_back(std::move(report.frame));
       totals += report.totals;
@@ -400,7 +429,7 @@ Work declare_segment(CLI::App& app) {
           "sub-folder of DIR");
   app.add_option("--disparity", options->input.disparity,
                  "disparity map (.png, .pfm, .npy) instead of matching, or a folder of maps named like "
-                 "the frames; RIGHT is optional")
+                 "the frames; RIGHT is optional, and checks the map")
       ->type_name("PATH");
   add_exec_options(app, options->exec);
   app.add_option("-o,--output", options->output,

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cairn/diagnosis/diagnose.hpp>
+#include <cairn/diagnosis/given_disparity.hpp>
 #include <cairn/diagnosis/synchrony.hpp>
 #include <cairn/evaluation/disparity_error.hpp>
 #include <cairn/evaluation/object_error.hpp>
@@ -86,6 +87,15 @@ std::vector<std::string> faults_of(const PairMeasures& measures, const PyCalibra
   for (const Finding& finding : diagnose(measures, calibration.rig(), range, judged))
     all.push_back(output::finding_json(finding, {}));
   return all;
+}
+
+/// Of a given disparity, compared with the pair.
+std::optional<std::string> fault_of_given(const LoadedImage& left, const LoadedImage& right,
+                                          const DisparityMap& map, const PyCalibration& calibration,
+                                          const Exec& exec) {
+  const auto finding = check_given_disparity(map.disparity_px, StereoPair::from(left.gray(), right.gray()),
+                                             calibration.rig(), exec);
+  return finding ? std::optional(output::finding_json(*finding, {})) : std::nullopt;
 }
 
 std::optional<std::string> fault_of(const Synchrony& measured) {
@@ -236,6 +246,7 @@ void bind_diagnosis(py::module_& m) {
   m.def("diagnosis_limits", &diagnosis_limits);
   m.def("faults_of", &faults_of);
   m.def("fault_of", &fault_of);
+  m.def("fault_of_given", &fault_of_given, Released());
 }
 
 void bind_tuning(py::module_& m) {

@@ -4,6 +4,9 @@
 
 from __future__ import annotations
 
+import json
+import warnings
+
 import numpy as np
 
 from . import _cairn
@@ -130,12 +133,18 @@ def segment(left: ImageLike, right: Optional[ImageLike] = None, rig: RigLike = N
             picture(None, "right", exec, bgr)  # refuses it
         return Frame._of(left, *_cairn.segment_pair(left, right, rig, wanted, exec))
     if right is not None:
-        raise Error("right: found an image together with disparity_map, expected one of the two")
+        fault = _cairn.fault_of_given(left, right, disparity_map, rig, exec)
+        told = fault and json.loads(fault)
+        if told and told["severity"] == "broken":
+            raise Error(f"disparity_map: {told['finding']}: {told['says']}. {told['remedy']}")
+        if told:
+            warnings.warn(f"disparity_map: {told['finding']}: {told['says']}", stacklevel=3)
     return Frame._of(left, *_cairn.segment_given(left, disparity_map, rig, wanted, exec))
 
 
 segment.__doc__ = f"""Segments a stereo pair into objects: the whole method. Returns a Frame.
-{ABOUT} disparity_map: an external map instead of right, (H, W) float32 in px, NaN = hole, or a DisparityMap."""
+{ABOUT} disparity_map: an external map instead of matching, (H, W) float32 in px, NaN = hole, or a DisparityMap. With
+right it is compared with both images, and refused if it is no disparity of them, as depth is not."""
 segment = checked(segment)
 
 

@@ -178,8 +178,18 @@ def test_disparities_may_be_any_float_type_but_not_integers(sample):
         cairn.segment(sample.left, disparity_map=truth[:, 1:])
     with pytest.raises(cairn.Error):
         cairn.segment(sample.left, disparity_map=np.full((240, 320), 1e9, np.float32))
-    with pytest.raises(cairn.Error, match="together with disparity_map"):
-        cairn.segment(sample.left, sample.right, disparity_map=truth)
+
+
+def test_a_disparity_map_is_compared_with_the_pair(sample):
+    truth = cairn.load_disparity(sample.folder / "disp_left.png")
+    rig = sample.calibration.rig
+    given = cairn.segment(sample.left, sample.right, rig, disparity_map=truth)
+    assert same_frame(given, cairn.segment(sample.left, rig=rig, disparity_map=truth))
+    depth_mm = np.float32(1000 * rig.focal_px * rig.baseline_m) / (truth + np.float32(rig.doffs_px)) / np.float32(256)
+    for wrong, word in ((depth_mm, "depth in mm"), (16 * truth, "16 times"), (truth[::-1].copy(), "upside down")):
+        with pytest.raises(cairn.Error, match=f"disparity_map: no disparity of these images: .*{word}"):
+            cairn.segment(sample.left, sample.right, rig, disparity_map=wrong)
+        cairn.segment(sample.left, rig=rig, disparity_map=wrong)  # without the right image nothing can be compared
 
 
 # ---- out ----

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/io/disparity_files.hpp>
+
 #include "command.hpp"
 #include "support/samples.hpp"
 
@@ -101,6 +103,51 @@ TEST_F(Passing, CountsSuspectFramesBeyondTheMeasuredOnes) {
   EXPECT_NE(outcome.err.find("in 5 of 7 frames (a, b, c, ...)"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("cairn: note: 2 more frames have hardly any common rows"), std::string::npos)
       << outcome.err;
+}
+
+/// The true disparities of the sample, changed.
+template <class Value>
+void write_map(const fs::path& path, Value value) {
+  const Image<float> truth = io::load_disparity(samples::folder("overlap") / "disp_left.png");
+  Image<float> map(truth.size());
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) map(x, y) = value(truth, x, y);
+  }
+  io::save_disparity(path, map);
+}
+
+TEST_F(Passing, RefusesAMapThatIsNoDisparityOfTheImages) {
+  const std::string sample = samples::folder("overlap").string();
+  write_map(at("true.pfm"), [](const auto& truth, int x, int y) { return truth(x, y); });
+  EXPECT_EQ(run({"segment", sample, "--disparity", path("true.pfm")}).err, "");
+  write_map(at("mm.png"), [](const auto& truth, int x, int y) { return 20 / truth(x, y); });
+  const Outcome depth = run({"segment", sample, "--disparity", path("mm.png")});
+  EXPECT_EQ(depth.code, 2);
+  EXPECT_EQ(depth.err.find("cairn: --disparity " + path("mm.png") + ": no disparity of these images: "), 0U)
+      << depth.err;
+  EXPECT_NE(depth.err.find("it looks like depth"), std::string::npos) << depth.err;
+  EXPECT_EQ(lines(depth.err), 1) << depth.err;
+  write_map(at("flipped.pfm"),
+            [](const auto& truth, int x, int y) { return truth(x, truth.height() - 1 - y); });
+  const Outcome flipped = run({"segment", picture("overlap", "left"), picture("overlap", "right"),
+                               "--disparity", path("flipped.pfm")});
+  EXPECT_EQ(flipped.code, 2);
+  EXPECT_NE(flipped.err.find("upside down"), std::string::npos) << flipped.err;
+  // Without the right image nothing can be compared.
+  EXPECT_EQ(run({"segment", picture("overlap", "left"), "--disparity", path("flipped.pfm")}).code, 0);
+}
+
+TEST_F(Passing, RefusesEveryMapOfAFolderUntilOneFits) {
+  toned_frames(at("frames"), "abcdefgh", 0, 255);
+  fs::create_directories(at("maps"));
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"}) {
+    write_map(at("maps") / (std::string(name) + ".pfm"),
+              [&](const auto& truth, int x, int y) { return *name < 'h' ? 16 * truth(x, y) : truth(x, y); });
+  }
+  const Outcome outcome = run({"segment", path("frames"), "--disparity", path("maps")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("frame a is skipped: --disparity"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("cairn: 7 of 8 frames skipped"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

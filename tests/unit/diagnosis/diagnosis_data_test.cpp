@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cairn/diagnosis/diagnose.hpp>
+#include <cairn/diagnosis/given_disparity.hpp>
 #include <cairn/diagnosis/synchrony.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/dataset.hpp>
+#include <cairn/io/disparity_files.hpp>
 #include <cairn/io/image_files.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <cstdlib>
@@ -44,6 +46,18 @@ TEST_P(GoodPairs, HaveNoFindings) {
     const auto measures = measure_pair(StereoPair::from(images.left.gray, images.right.gray), {});
     for (const Finding& finding : diagnose(measures, calibration.rig, range, {}))
       ADD_FAILURE() << folder << ": " << info(finding.kind).name << ": " << finding.says;
+  }
+}
+
+TEST_P(GoodPairs, FitTheirTrueDisparities) {
+  for (const fs::path& folder : pairs_below(collection() / GetParam())) {
+    if (!fs::exists(folder / "disp_left.png")) continue;
+    const auto images = io::load_pair(folder / "left.png", folder / "right.png");
+    const Image<float> truth = io::load_disparity(folder / "disp_left.png");
+    if (truth.size() != images.left.gray.size()) continue;
+    const auto finding =
+        check_given_disparity(truth, StereoPair::from(images.left.gray, images.right.gray), std::nullopt, {});
+    EXPECT_FALSE(finding) << folder << ": " << finding->says;
   }
 }
 
