@@ -10,10 +10,12 @@
 #include <cmath>
 #include <iostream>
 #include <string_view>
+#include <utility>
 
 #include "batch_frames.hpp"
 #include "commands.hpp"
 #include "common.hpp"
+#include "findings.hpp"
 #include "terminal.hpp"
 
 namespace cairn::cli {
@@ -83,7 +85,7 @@ class RowMaker {
 
   std::string operator()(const batch::PlannedFrame& planned) {
     reader_.check(planned);
-    if (tracks_) return tracks_->row(planned);
+    if (tracks_) return tracks_->row(planned, news_);
     BatchFrame read;
     Frame frame;
     try {
@@ -93,15 +95,22 @@ class RowMaker {
       return batch::error_row(planned.name, error.what());
     }
     const LoadedFrame& loaded = read.loaded;
+    news_ += changes_text(
+        planned.name, watch_.next(frame, loaded.left.gray, loaded.right, loaded.rig, loaded.config, exec_));
     const output::Provenance provenance{loaded.preset, loaded.config, loaded.rig, {}, false, read.stamp_ns};
     if (!kept_.empty())
       output::write_result(kept_ / planned.name, loaded.left.gray, loaded.left.rgb, frame, provenance);
     return output::frame_row(planned.name, frame, provenance);
   }
 
+  /// What was found about the rigs since the last call: lines for stderr.
+  std::string news() { return std::exchange(news_, {}); }
+
  private:
   Exec exec_;
   BatchReader reader_;
+  RigWatch watch_;
+  std::string news_;
   std::optional<TrackRows> tracks_;
   fs::path kept_;
 };
@@ -114,7 +123,15 @@ int work(const BatchOptions& options) {
   const batch::FrameSpan span = batch::span_of(shard, run);
   const Progress progress(span.end - span.begin);
   const batch::WorkResult worked = batch::work_on(
-      run, shard, [&](const batch::PlannedFrame& frame) { return make_row(frame); },
+      run, shard,
+      [&](const batch::PlannedFrame& frame) {
+        std::string row = make_row(frame);
+        if (const std::string news = make_row.news(); !news.empty()) {
+          progress.clear();
+          std::cerr << news;
+        }
+        return row;
+      },
       [&](std::size_t place, std::size_t, const std::string& name) { progress.at(place, name); },
       [&](const std::string& whom) {
         std::cerr << "cairn: shard " << batch::text(shard) << ": waits for " << whom

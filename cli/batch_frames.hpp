@@ -89,8 +89,9 @@ class TrackRows {
   TrackRows(const TrackRows&) = delete;
   TrackRows& operator=(const TrackRows&) = delete;
   ~TrackRows();
-  /// Processes all earlier frames of the sequence, unless the previous row was that of the frame before.
-  std::string row(const batch::PlannedFrame& frame);
+  /// Processes all earlier frames of the sequence, unless the previous row was that of the frame before. Adds to
+  /// `news` what is found about the rig: lines for stderr.
+  std::string row(const batch::PlannedFrame& frame, std::string& news);
 
  private:
   struct State;

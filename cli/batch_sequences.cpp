@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "batch_frames.hpp"
+#include "findings.hpp"
 #include "follow_options.hpp"
 #include "source_options.hpp"
 
@@ -172,7 +173,7 @@ struct TrackRows::State {
   }
 
   /// The row of frame `next`, which has this name.
-  std::string advance(const std::string& name) {
+  std::string advance(const std::string& name, std::string& news) {
     const std::size_t index = next;
     next += of.step;
     if (!ended.empty()) return batch::error_row(name, ended);
@@ -180,6 +181,7 @@ struct TrackRows::State {
       if (!read_ahead) read_ahead = run->next();
       if (!read_ahead || read_ahead->pair->index != index)
         return batch::error_row(name, of.source + ": frame " + std::to_string(index) + " cannot be read");
+      news += changes_text(name, read_ahead->changes);
       output::Json line = *results_of(*std::exchange(read_ahead, nullptr), {});
       line["frame"] = name;
       line.erase("name");
@@ -195,13 +197,13 @@ TrackRows::TrackRows(ConfigOptions config, const Exec& exec)
     : state_(std::make_unique<State>(State{std::move(config), exec, {}, {}, {}, {}, 0, {}})) {}
 TrackRows::~TrackRows() = default;
 
-std::string TrackRows::row(const batch::PlannedFrame& frame) {
+std::string TrackRows::row(const batch::PlannedFrame& frame, std::string& news) {
   State& state = *state_;
   const BatchSequence sequence = sequence_of(frame);
   const std::size_t index = index_of(frame);
   if (sequence != state.of || index != state.next) state.begin(sequence);
-  while (state.next < index) (void)state.advance(frame.name);
-  return state.advance(frame.name);
+  while (state.next < index) (void)state.advance(frame.name, news);
+  return state.advance(frame.name, news);
 }
 
 }  // namespace cairn::cli

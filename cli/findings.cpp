@@ -43,11 +43,11 @@ std::string line_of(const Finding& finding, const std::string& where) {
 }  // namespace
 
 std::string changes_text(const std::string& frame, const std::vector<FindingChange>& changes) {
+  const std::string where = " (frame " + on_one_line(frame) + ")";
   std::string text;
   for (const auto& [finding, is_gone] : changes) {
-    text += is_gone ? "cairn: note: no longer found: " + std::string(info(finding.kind).name) + ", in " +
-                          on_one_line(frame) + "\n"
-                    : line_of(finding, ", in " + on_one_line(frame));
+    text += is_gone ? "cairn: note: no longer found: " + std::string(info(finding.kind).name) + where + "\n"
+                    : line_of(finding, where);
   }
   return text;
 }

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "findings.hpp"
 #include "interrupt.hpp"
 #include "run_sinks.hpp"
 #include "terminal.hpp"
@@ -70,6 +71,7 @@ class FollowConsole : public live::Sink {
     if (prints_) std::cout << line_of(step, name) << "\n";
     if (step.control) std::cerr << name << ": " << control_line(*step.control) << "\n";
     if (output::becomes_unreliable(step)) std::cerr << unreliable_line(step, name) << "\n";
+    std::cerr << changes_text(name, frame->changes);
     for (const LandmarkEvent& event : frame->events) {
       if (prints_) std::cout << event_line(event) << "\n";
     }
@@ -116,10 +118,6 @@ int follow(const RunOptions& options) {
   FollowConsole console(source->size(), !options.json_lines);
   RunSinks sinks(options, runner, *source, config, true, true, console);
   opened = &sinks;
-  if (!source->rig()) {
-    std::cerr << "cairn: " << source->name()
-              << ": no calibration with a baseline: tracks in the image only, without metres and motion\n";
-  }
   const EndsBySignal ends(*source);
   catch_interrupts();
   sinks.begin();

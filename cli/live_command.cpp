@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "findings.hpp"
 #include "interrupt.hpp"
 #include "run_sinks.hpp"
 #include "terminal.hpp"
@@ -27,14 +28,18 @@ struct LiveCommandOptions {
   bool loop = false;
 };
 
-/// Prints to stderr: findings of the search for better options and, if it is a terminal, a status line per
-/// second.
+/// Prints to stderr: findings about the rig and of the search for better options and, if it is a terminal, a status
+/// line per second.
 class StatusLine : public live::Sink {
  public:
   void offer(const live::LiveFramePtr& frame) override {
     if (frame->step.control) {
       progress_.clear();
       std::cerr << frame->pair->name << ": " << control_line(*frame->step.control) << "\n";
+    }
+    if (!frame->changes.empty()) {
+      progress_.clear();
+      std::cerr << changes_text(frame->pair->name, frame->changes);
     }
     if (frame->done - shown_ < std::chrono::seconds(1)) return;
     shown_ = frame->done;

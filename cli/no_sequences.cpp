@@ -60,7 +60,7 @@ std::string config_of_tracked_run(const ConfigOptions& /*options*/) {
 struct TrackRows::State {};
 TrackRows::TrackRows(ConfigOptions /*config*/, const Exec& /*exec*/) {}
 TrackRows::~TrackRows() = default;
-std::string TrackRows::row(const batch::PlannedFrame& /*frame*/) {
+std::string TrackRows::row(const batch::PlannedFrame& /*frame*/, std::string& /*news*/) {
   refuse();
 }
 struct SequenceReader::State {};

@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "findings.hpp"
 #include "follow_options.hpp"
 #include "interrupt.hpp"
 #include "source_options.hpp"
@@ -80,8 +81,8 @@ class CameraMotion {
       : rig_(rig), priors_(priors), run_(run) {}
 
   TrackedFrame next(const input::SequenceFrame& frame, const FollowConfig& config, const Exec& exec) {
-    const StereoResult scene = estimate_disparity(
-        StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), rig_, config.segmentation, exec);
+    StereoResult scene = estimate_disparity(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb),
+                                            rig_, config.segmentation, exec);
     const auto start = live::Clock::now();
     if (!before_) {
       const Pose first = first_pose(scene.ground, rig_);
@@ -102,6 +103,7 @@ class CameraMotion {
     step.motion = moved.motion;
     step.map_from_camera = state_.map_from_camera;
     step.is_lost = state_.lost;
+    static_cast<StereoResult&>(step.frame) = std::move(scene);  // by which the rig is judged
     return step;
   }
 
@@ -121,6 +123,10 @@ class Poses : public live::Sink {
       : form_(form), prints_(prints), run_(run), progress_(frames.value_or(2)) {}
   void offer(const live::LiveFramePtr& frame) override {
     progress_.at(run_.frames, frame->pair->name);
+    if (!frame->changes.empty()) {
+      progress_.clear();
+      std::cerr << changes_text(frame->pair->name, frame->changes);
+    }
     if (!add(run_, frame->step, form_ == output::TrajectoryForm::kitti) || !prints_) return;
     progress_.clear();
     std::cout << output::trajectory_text({run_.poses.back()}, form_) << std::flush;

@@ -5,12 +5,15 @@
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/frame_names.hpp>
 #include <cairn/io/image_files.hpp>
+#include <cairn/pipeline/config.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <system_error>
 
 #include "commands.hpp"
+#include "common.hpp"
+#include "findings.hpp"
 #include "source_options.hpp"
 #include "terminal.hpp"
 
@@ -75,7 +78,11 @@ class Recording {
 
 int record(const RecordOptions& options) {
   check_empty(options.output);
-  const std::unique_ptr<input::Sequence> sequence = open_source(options.input, Pool::make(), {});
+  const Exec exec = make_exec({});
+  const std::unique_ptr<input::Sequence> sequence = open_source(options.input, exec.pool, {});
+  MatchConfig range = Config::preset("default").match;
+  range.num_disparities = sequence->disparities().value_or(range.num_disparities);
+  RigWatch watch;
   const EndsBySignal ends(*sequence);
   const Progress progress(sequence->size().value_or(2));
   Recording recording(options.output, *sequence);
@@ -83,6 +90,11 @@ int record(const RecordOptions& options) {
     while (const std::optional<input::SequenceFrame> frame = sequence->next()) {
       progress.at(recording.count(), frame->name);
       recording.add(*frame);
+      const auto changes =
+          watch.next(StereoPair::from(frame->left.gray, frame->right), sequence->rig(), range, exec);
+      if (changes.empty()) continue;
+      progress.clear();
+      std::cerr << changes_text(frame->name, changes);
     }
   } catch (const Error& error) {
     progress.clear();

@@ -113,7 +113,7 @@ void RunFiles::offer(const live::LiveFramePtr& frame) {
     const Image<Rgb> drawn = output::draw_tracks(left.gray, left.rgb, step);
     io::save_png(folder / "tracks.png", drawn);
   }
-  for (const Json& event : output::event_lines(step, frame->landmarks, frame->events)) {
+  for (const Json& event : output::event_lines(step, frame->landmarks, frame->events, frame->changes)) {
     const std::string line = output::json_text(event);
     files_->add_event(line + "\n");
     if (page_) page_->add_event(line);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <cairn/diagnosis/rig_watch.hpp>
 #include <cairn/input/sequence.hpp>
 #include <cairn/live/sequence_run.hpp>
 #include <cairn/output/results.hpp>
@@ -65,8 +66,10 @@ struct LiveFrame {
   TrackedFrame step;
   std::vector<LandmarkOfTrack> landmarks;
   std::vector<LandmarkEvent> events;
-  std::optional<Pose> map_from_odom;  // nullopt if unknown
-  Clock::time_point arrived;          // of the pair
+  std::optional<Pose> map_from_odom;   // nullopt if unknown
+  std::vector<Finding> findings;       // what is wrong with the rig, as far as known
+  std::vector<FindingChange> changes;  // of these, with this frame
+  Clock::time_point arrived;           // of the pair
   Clock::time_point started;
   Clock::time_point done;
   std::vector<output::StageTime> stages;

@@ -189,6 +189,7 @@ std::shared_ptr<LiveFrame> Runner::work(PairPtr pair) {
   frame->events = follow_.marked().events;
   frame->map_from_odom = follow_.marked().state.map_from_odom();
   take_over(frame->step.control);
+  judge(*frame, *pair);
   ++frames_;
   frame->arrived = pair->arrived.value_or(frame->started);
   frame->pair = std::move(pair);
@@ -207,6 +208,15 @@ std::shared_ptr<LiveFrame> Runner::work(PairPtr pair) {
   }
   latencies_.add(ms_between(frame->arrived, frame->done));
   return frame;
+}
+
+/// After the stages, whose times do not include it. Another way to process a pair may leave no disparity to judge.
+void Runner::judge(LiveFrame& frame, const input::SequenceFrame& pair) {
+  if (!frame.step.frame.disparity.disparity_px.empty()) {
+    frame.changes = watch_.next(frame.step.frame, pair.left.gray, pair.right, source_.rig(),
+                                used_config_->segmentation, exec_);
+  }
+  frame.findings = watch_.findings();
 }
 
 void Runner::take_config() {

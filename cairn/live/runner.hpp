@@ -102,6 +102,7 @@ class Runner {
   PairPtr newest(NewestSlot<PairPtr>& slot);
   TrackedFrame step_of(const input::SequenceFrame& pair);
   std::shared_ptr<LiveFrame> work(PairPtr pair);
+  void judge(LiveFrame& frame, const input::SequenceFrame& pair);
   void take_config();
   void take_over(const std::optional<ControlEvent>& control);
 
@@ -130,6 +131,7 @@ class Runner {
   bool has_failed_ = false;
   bool was_ended_ = false;
   int frames_ = 0;
+  RigWatch watch_;
   std::deque<Clock::time_point> recent_;
   Latencies latencies_;
 };

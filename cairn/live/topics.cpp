@@ -94,6 +94,7 @@ Message stats(const LiveFrame& frame, const MessageForm& form) {
                  {"dropped", dropped},
                  {"connected", frame.source.is_connected},
                  {"trouble", frame.source.trouble},
+                 {"findings", output::json_of(frame.findings)},
                  {"revision", frame.revision}};
   return ros::encode(ros::String{output::json_text(all)});
 }

@@ -107,6 +107,16 @@ Json json_of(const Synchrony& s, const std::vector<std::string>& names) {
           {"right_repeats", s.right_repeats}};
 }
 
+Json json_of(const std::vector<Finding>& findings) {
+  Json all = Json::array();
+  for (const Finding& finding : findings) {
+    Json one = json_of(finding, {});
+    one.erase("pairs");
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 std::string measures_json(const PairMeasures& measures) {
   return json_text(json_of(measures));
 }

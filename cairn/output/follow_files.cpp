@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/diagnosis/rig_watch.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/rle.hpp>
 #include <cairn/output/json.hpp>
@@ -159,7 +160,8 @@ Json landmark_event_of(const TrackedFrame& step, const LandmarkEvent& event,
 }  // namespace
 
 std::vector<Json> event_lines(const TrackedFrame& step, const std::vector<LandmarkOfTrack>& landmarks,
-                              const std::vector<LandmarkEvent>& events) {
+                              const std::vector<LandmarkEvent>& events,
+                              const std::vector<FindingChange>& changes) {
   std::vector<Json> lines;
   if (step.control) {
     const ControlEvent& event = *step.control;
@@ -173,6 +175,12 @@ std::vector<Json> event_lines(const TrackedFrame& step, const std::vector<Landma
     Json& j = lines.emplace_back(event_of(step, "unreliable"));
     j["weakest"] = step.reliability.weakest;
     j["reliability"] = step.reliability.value.value_or(0);
+  }
+  for (const auto& [finding, is_gone] : changes) {
+    Json& j = lines.emplace_back(event_of(step, is_gone ? "finding_gone" : "finding"));
+    j["finding"] = info(finding.kind).name;
+    j["severity"] = choice_name(finding.severity, kSeverities);
+    j["says"] = finding.says;
   }
   for (const LandmarkEvent& event : events) lines.push_back(landmark_event_of(step, event, landmarks));
   return lines;

@@ -13,6 +13,7 @@ namespace cairn {
 struct Config;
 struct ControlEvent;
 struct Finding;
+struct FindingChange;
 struct Frame;
 struct LandmarkEvent;
 struct LandmarkOfTrack;
@@ -55,6 +56,8 @@ Json json_of(const Config& config);
 Json json_of(const Frame& frame, const Provenance& provenance);
 /// `names`: of the pairs that Finding::frames counts.
 Json json_of(const Finding& finding, const std::vector<std::string>& names);
+/// Those of a run: a list, without names of pairs.
+Json json_of(const std::vector<Finding>& findings);
 Json json_of(const PairMeasures& measures);
 /// `names`: of its frames; without them frames go by their numbers.
 Json json_of(const Synchrony& synchrony, const std::vector<std::string>& names);
@@ -67,8 +70,10 @@ EncodedFrame encode_step(Json line, const TrackedFrame& step, View<const Gray> l
                          std::optional<double> milliseconds, const std::optional<Pose>& map_from_odom);
 /// A frame of the page (web/html_page.hpp) with its objects.json; null: none.
 EncodedFrame encode_frame(const PageFrame& frame, Json result);
-/// The lines of events.jsonl of a step: options that control found, unreliability, then landmarks.
+/// The lines of events.jsonl of a step: options that control found, unreliability, findings about the rig, then
+/// landmarks.
 std::vector<Json> event_lines(const TrackedFrame& step, const std::vector<LandmarkOfTrack>& landmarks,
-                              const std::vector<LandmarkEvent>& events);
+                              const std::vector<LandmarkEvent>& events,
+                              const std::vector<FindingChange>& changes);
 
 }  // namespace cairn::output

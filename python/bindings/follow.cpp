@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/input/sequence_scores_json.hpp>
 #include <cairn/live/runner.hpp>
+#include <cairn/output/diagnosis_json.hpp>
 #include <cairn/output/follow_files.hpp>
 #include <map>
 #include <mutex>
@@ -209,6 +210,8 @@ class SequenceIterator {
       close_run(RunState::done);
       return std::nullopt;
     }
+    findings_.clear();
+    for (const Finding& finding : found->findings) findings_.push_back(output::finding_json(finding, {}));
     const input::SequenceFrame& pair = *found->pair;
     FollowedFrame made{{pair.left.gray.clone(), pair.left.rgb.clone()},
                        std::move(found->step),
@@ -231,6 +234,7 @@ class SequenceIterator {
     close_run(RunState::aborted);  // before the end of the source
   }
   [[nodiscard]] const input::Sequence& source() const { return *source_; }
+  [[nodiscard]] const std::vector<std::string>& findings() const { return findings_; }
 
  private:
   void close_run(RunState state) {
@@ -241,6 +245,7 @@ class SequenceIterator {
   FollowSettings settings_;
   std::unique_ptr<input::Sequence> source_;
   std::optional<live::Runner> run_;
+  std::vector<std::string> findings_;  // about the rig, as of the last frame
   std::mutex busy_;
   bool closed_ = false;
 };
@@ -365,6 +370,7 @@ void bind_follow(py::module_& m) {
       .def("close", &SequenceIterator::close, Released())
       .def("rig", [](const SequenceIterator& self) { return self.source().rig(); })
       .def("size", [](const SequenceIterator& self) { return self.source().size(); })
+      .def("findings", &SequenceIterator::findings)
       .def("ended_early", [](const SequenceIterator& self) { return self.source().ended_early(); })
       .def("remarks", [](const SequenceIterator& self) {
         std::vector<std::pair<std::string, std::size_t>> all;

@@ -13,6 +13,7 @@ from ._calls import ALL_GROUPS, GROUPS, ArgumentError, checked, describes, doc, 
 from ._cairn import Error
 from ._frame import Frame
 from ._options import base_of, settings_of
+from ._scores import Finding, report_of
 
 
 def matrix(value, name, side):
@@ -206,6 +207,9 @@ class Following:
     size: Optional[int] = doc("largest number of frames, for videos an estimate; None if unknown", lambda self: self._sequence.size())
     remarks: List[Tuple[str, int]] = doc(
         "remarks on frames of the source so far: (text, number of frames)", lambda self: self._sequence.remarks())
+    findings: List[Finding] = doc(
+        "what is wrong with the rig, judged like in `cairn follow` (docs/doctor.md): list of Finding as of the last Step",
+        lambda self: [report_of(Finding, fault) for fault in self._sequence.findings()])
     ended_early: str = doc("why the source ended early; '' if it did not", lambda self: self._sequence.ended_early())
 
     def __iter__(self) -> Following:

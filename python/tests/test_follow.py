@@ -52,6 +52,21 @@ def test_the_scores_of_a_sequence_equal_those_of_the_command(command, steps, tmp
         cairn.score_sequence(tmp_path / "none", SEQUENCE)
 
 
+def test_findings_about_the_rig_are_those_of_the_command(tmp_path):
+    following = cairn.follow(SEQUENCE)
+    next(following)
+    assert not [finding for finding in following.findings if finding.severity != "note"]
+    for name in ("000", "001"):
+        (tmp_path / name).mkdir()
+        for side, other in (("left", "right"), ("right", "left")):
+            (tmp_path / name / f"{side}.png").write_bytes((SEQUENCE / name / f"{other}.png").read_bytes())
+        (tmp_path / name / "calib.txt").write_bytes((SEQUENCE / name / "calib.txt").read_bytes())
+    swapped = cairn.follow(tmp_path)
+    assert swapped.findings == []
+    list(swapped)
+    assert ("cameras swapped", "broken") in [(finding.kind, finding.severity) for finding in swapped.findings]
+
+
 def test_options_files_and_frames_equal_those_of_the_command(command, tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text("tracking:\n  min_hits: 2\nodometry:\n  max_features: 150\n")

@@ -112,12 +112,49 @@ TEST_F(Follow, GivesTheSameForAnyNumberOfThreadsAndInstructionSet) {
   EXPECT_EQ(run({"follow", path("in"), "--json-lines", "--target", "scalar"}).out, one);
 }
 
+TEST_F(Follow, EveryCommandOnASequenceReportsSwappedCamerasOnce) {
+  const fs::path sample = fs::path(CAIRN_SOURCE_DIR) / "data/samples/overlap";
+  for (const char* name : {"0", "1", "2"}) {
+    fs::create_directories(at("in") / name);
+    fs::copy_file(sample / "left.png", at("in") / name / "right.png");
+    fs::copy_file(sample / "right.png", at("in") / name / "left.png");
+    fs::copy_file(sample / "calib.txt", at("in") / name / "calib.txt");
+  }
+  const auto reports = [](const Outcome& outcome) {
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::size_t found = outcome.err.find("cairn: broken: cameras swapped: ");
+    ASSERT_NE(found, std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(" (frame 0). Exchange the two images"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("cameras swapped", found + 30), std::string::npos) << outcome.err;
+  };
+  reports(run({"follow", path("in"), "-o", path("out")}));
+  reports(run({"live", path("in"), "--every-frame", "--pace", "0"}));
+  reports(run({"live", path("in"), "--every-frame", "--pace", "0", "--no-tracks"}));
+  reports(run({"odometry", path("in")}));
+  reports(run({"record", path("in"), "-o", path("recorded")}));
+  for (const bool tracks : {false, true}) {
+    const std::string folder = path(tracks ? "tracked" : "batch");
+    std::vector<std::string> plan{"batch", "plan", path("in"), "-o", folder};
+    if (tracks) plan.emplace_back("--tracks");
+    ASSERT_EQ(run(plan).code, 0);
+    const Outcome worked = run({"batch", "work", folder});
+    EXPECT_NE(worked.err.find("cairn: broken: cameras swapped: "), std::string::npos) << worked.err;
+  }
+  const std::vector<Json> events = lines_of(at("out/events.jsonl"));
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events[0]["kind"], "finding");
+  EXPECT_EQ(events[0]["finding"], "cameras swapped");
+  EXPECT_EQ(events[0]["severity"], "broken");
+  EXPECT_EQ(events[0]["frame"], 0);
+}
+
 TEST_F(Follow, WithoutACalibrationThereAreIdsAndNoMetres) {
   standing(3);
   for (int i = 0; i < 3; ++i) fs::remove(at("in/" + std::to_string(i) + "/calib.txt"));
   const Outcome outcome = run({"follow", path("in"), "-o", path("out")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("no calibration"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("cairn: note: no metres: the source has no calibration with a baseline"), 0U)
+      << outcome.err;
   const std::vector<Json> lines = lines_of(at("out/tracks.jsonl"));
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[2]["motion"]["refusal"], "no_rig");

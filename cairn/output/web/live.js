@@ -840,6 +840,8 @@
     gauge('skew', isNumber(skew) ? fixed(skew, 2) : null, 'ms', 'Difference of the stamps of left and right');
     gauge('unpaired', source.unpaired > 0 ? String(source.unpaired) : null, '', 'Images without a partner within --max-skew');
     gauge('reconnects', source.is_live ? String(source.reconnects ?? 0) : null, '', 'Reconnections of the camera', source.is_connected === false ? 'bad' : '');
+    const wrong = (stats.findings ?? []).filter(({severity}) => severity !== 'note'), [first] = wrong;
+    gauge('rig', first ? first.finding : null, wrong.length > 1 ? `and ${wrong.length - 1} more` : '', wrong.map(({says, remedy}) => `${says}. ${remedy}`).join('\n'), wrong.some(({severity}) => severity === 'broken') ? 'bad' : 'warn');
     gauge('skipped', stats.skipped > 0 ? String(stats.skipped) : null, '', 'Messages dropped because the network or the browser was too slow');
     gauge('viewers', isNumber(stats.clients) ? String(stats.clients) : null, '', 'Connected clients');
     byId('playback').hidden = stats.is_file !== true;

@@ -7,6 +7,7 @@
 #include <cairn/live/looped.hpp>
 #include <cairn/live/queued_sink.hpp>
 #include <cairn/live/runner.hpp>
+#include <cairn/live/topics.hpp>
 #include <functional>
 #include <thread>
 
@@ -54,6 +55,7 @@ class Camera : public input::Sequence {
   [[nodiscard]] std::string stamps_from() const override { return "the test"; }
   [[nodiscard]] const std::vector<input::SourceRemark>& remarks() const override { return remarks_; }
   [[nodiscard]] const std::string& ended_early() const override { return none_; }
+  void lose_calibration() { rig_.reset(); }
   void stop() override { is_stopped_ = true; }
   [[nodiscard]] input::SourceStatus status() const override {
     input::SourceStatus status;
@@ -199,6 +201,26 @@ TEST(Runner, AGapBeforeADroppedPairCountsForTheNext) {
   std::size_t gaps = 0;
   for (const LiveFramePtr& frame : notebook.frames) gaps += frame->pair->after_gap ? 1 : 0;
   EXPECT_EQ(gaps, 1U);
+}
+
+TEST(Runner, EveryFrameHasTheFindingsAndTheFirstOneTheirChange) {
+  Camera camera(3, 0ms, false);
+  camera.lose_calibration();
+  Notebook notebook;
+  run(camera, LiveOptions::unpaced(), notebook);
+  ASSERT_EQ(notebook.frames.size(), 3U);
+  for (const LiveFramePtr& frame : notebook.frames) {
+    ASSERT_FALSE(frame->findings.empty());
+    EXPECT_EQ(info(frame->findings.front().kind).name, "no metres");
+    EXPECT_EQ(frame->changes.empty(), frame->pair->index > 0);
+    for (const Topic& topic : topics()) {
+      if (topic.name != "stats" || topic.make == nullptr) continue;
+      const MessagePtr stats = message_of(topic, *frame, {});
+      const std::string text(stats->begin(), stats->end());
+      EXPECT_NE(text.find(R"("findings":[{"finding":"no metres","severity":"note")"), std::string::npos)
+          << text;
+    }
+  }
 }
 
 TEST(Runner, StepsCountOnlyWhileItIsPaused) {

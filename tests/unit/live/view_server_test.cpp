@@ -74,6 +74,7 @@ LiveFramePtr frame_at(int index) {
   frame->done = Clock::now();
   frame->started = frame->arrived = frame->done - std::chrono::milliseconds(20);
   frame->stages = {{"match", 12.5}};
+  frame->findings = {{FindingKind::swapped, Severity::broken, 98, "98 % of 50 points are negative"}};
   frame->rate_hz = 10;
   return frame;
 }
@@ -511,6 +512,9 @@ TEST(ViewServer, PublishesTheContentOfTheFrame) {
   EXPECT_EQ(stats.at("num_disparities"), frame->config->segmentation.match.num_disparities);
   EXPECT_EQ(stats.at("image").at("width"), size.width);
   EXPECT_EQ(stats.at("tunable"), false);
+  ASSERT_EQ(stats.at("findings").size(), 1U);
+  EXPECT_EQ(stats.at("findings").at(0).at("finding"), "cameras swapped");
+  EXPECT_EQ(stats.at("findings").at(0).at("severity"), "broken");
   EXPECT_NEAR(stats.at("rig").at("focal_px").get<double>(), double{sample().calibration.rig->focal_px}, 1e-3);
   EXPECT_NEAR(stats.at("ground").at("normal").at(1).get<double>(), -1, 0.1);  // up
   ASSERT_EQ(stats.at("objects").size(), found.objects.list.size());
