@@ -46,6 +46,6 @@
 #include <cairn/pipeline/segment.hpp>            // segment: all of the above
 #include <cairn/pipeline/segmenter.hpp>          // Segmenter: the same for video
 #include <cairn/diagnosis/diagnose.hpp>          // measure_pair, diagnose: what is wrong with a rig
-#include <cairn/diagnosis/given_disparity.hpp>   // check_given_disparity
+#include <cairn/diagnosis/given_disparity.hpp>   // Given disparities, compared with the pair
 #include <cairn/diagnosis/rig_watch.hpp>         // RigWatch: the findings of a run
 #include <cairn/diagnosis/synchrony.hpp>         // measure_synchrony

@@ -12,11 +12,18 @@ namespace {
 
 constexpr double kDegrees = 57.29577951308232;
 
+template <class Is>
+double share_of(View<const Reject> reject, Is is) {
+  std::int64_t count = 0;
+  for (int y = 0; y < reject.height(); ++y)
+    count += std::count_if(reject.row(y), reject.row(y) + reject.width(), is);
+  return static_cast<double>(count) / static_cast<double>(reject.size().area());
+}
 double known_share(const DisparityMap& map) {
-  std::int64_t known = 0;
-  for (int y = 0; y < map.reject.height(); ++y)
-    known += std::count(map.reject.row(y), map.reject.row(y) + map.reject.width(), Reject::none);
-  return static_cast<double>(known) / static_cast<double>(map.reject.size().area());
+  return share_of(map.reject, [](Reject r) { return r == Reject::none; });
+}
+double share_below_floor(const DisparityMap& map) {
+  return share_of(map.reject, [](Reject r) { return has(r, Reject::below_ground); });
 }
 
 std::string text_of(const char* format, double value) {
@@ -225,7 +232,16 @@ void check_end_of_range(Case& c, const DisparityMap& map) {
 
 /// For segmented frames.
 void check_floor(Case& c, const Frame& frame) {
-  if (frame.ground.plane || frame.ground.refusal == Refusal::off) return;
+  if (frame.ground.refusal == Refusal::off) return;
+  if (frame.ground.plane) {
+    const double below = 100 * share_below_floor(frame.disparity);
+    if (below < static_cast<double>(c.config.note_below_floor)) return;
+    c.add(FindingKind::below_floor, Severity::note, below,
+          text_of("%.0f %%", below) + " of the pixels were refused as below the floor, on which " +
+              text_of("%.0f %%", 100 * static_cast<double>(frame.ground.support)) +
+              " of the disparities lie");
+    return;
+  }
   c.add(FindingKind::no_floor, Severity::note, 100 * known_share(frame.disparity),
         choice_name(frame.ground.refusal, kRefusals));
 }

@@ -43,6 +43,7 @@ struct DiagnosisConfig {
   float least_unequal_edge = 3.5F;
   float warn_baseline = 3;
   float warn_nearest = 30;
+  float note_below_floor = 25;
 };
 template <class V>
 void fields(DiagnosisConfig& c, V&& v) {
@@ -91,6 +92,8 @@ void fields(DiagnosisConfig& c, V&& v) {
     range(0.0F, 1e6F));
   v("warn_nearest", c.warn_nearest, "m", "nearest point that makes a baseline above 1 m implausible",
     range(0.0F, 1e6F));
+  v("note_below_floor", c.note_below_floor, "%", "pixels refused as below the floor: note",
+    range(0.0F, 100.0F));
 }
 
 /// All measurements of one pair.

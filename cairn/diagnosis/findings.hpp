@@ -42,7 +42,8 @@ enum class FindingKind : std::uint8_t {
   dark,
   brightness,
   blur,
-  no_floor
+  no_floor,
+  below_floor
 };
 
 /// The fixed texts of a kind. `number` and `unit` describe Finding::value.
@@ -141,7 +142,11 @@ inline constexpr std::array kFindings{
                 "Focus the camera, clean its lens, or shorten the exposure if it moves."},
     FindingInfo{FindingKind::no_floor, "no floor", "pixels with a disparity", "%",
                 "If the image shows a floor, state in the calibration how the camera is mounted and set "
-                "ground.source=pose, or add light; otherwise there is nothing to fix."}};
+                "ground.source=pose, or add light; otherwise there is nothing to fix."},
+    FindingInfo{
+        FindingKind::below_floor, "much below the floor", "pixels refused as below the floor", "%",
+        "Look at floor.png and reject.png: a mirroring floor, or a table's edge, needs nothing; if the "
+        "plane is no floor, set ground.source=pose, points or off."}};
 
 constexpr const FindingInfo& info(FindingKind kind) {
   return kFindings[static_cast<std::size_t>(kind)];

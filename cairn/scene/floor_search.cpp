@@ -41,7 +41,17 @@ constexpr double kMinSurplus = 6;         // standard deviations: of matches on 
 constexpr int kMinSeen = 3;               // originals seen for each one that is missing, of a mirror
 constexpr float kNearest = 1.25F;  // times the nearest match: the nearest a floor may be at the lower border
 constexpr float kApart = 4;        // px; least distance from an original
-constexpr int kLowerSurface = 3;   // a plane below the best counts with a third of its score
+
+// Fitted to planes that are a floor and planes that are none (lab/floors.py; docs/stages/ground.md, "Plausible
+// floors"): the log odds of a floor.
+constexpr double kOddsAtOnce = 0.7;     // without support, upright, at a usual height
+constexpr double kOddsOfSupport = 4.5;  // per share of the matches under the horizon
+constexpr double kOddsOfRoll = -0.15;   // per degree
+constexpr double kOddsOfHeight = -5.6;  // per factor e above the usual heights
+constexpr double kOddsOfDepth = -4.1;   // per factor e below them
+constexpr double kUsuallyHighest = 40;  // baselines
+constexpr double kUsuallyLowest = 1.5;  // baselines
+constexpr int kLowerSurface = 3;        // a plane below the best counts with a third of its score
 
 // The effort of the search: one to three milliseconds, four more if the left image is used.
 constexpr std::size_t kSamples = 4096;
@@ -152,6 +162,7 @@ struct Tally {
   [[nodiscard]] double rank() const {
     return score() <= 0 ? 0.0 : static_cast<double>(score()) * score() / all;
   }
+  [[nodiscard]] double support() const { return static_cast<double>(on) / std::max(1, all); }
   [[nodiscard]] bool convincing() const { return score() > 0 && score() >= kMinScore * all; }
 };
 
@@ -190,6 +201,19 @@ struct Camera {
     return pitch <= std::tan(radians(kSteepestPitch)) && pitch >= std::tan(radians(kMinPitch));
   }
 };
+
+/// The log odds that a plane with this support (0 … 1) is a floor: a camera stands upright, some baselines above its
+/// floor; the less usual a plane is, the more of what is seen must lie on it.
+double floor_odds(const GroundPlane& plane, double support, const Camera& camera) {
+  const Vec3 down = camera.normal(plane);
+  const auto x = double{down.x};
+  const auto y = double{down.y};
+  const double height = double{camera.focal_px} / std::sqrt(x * x + y * y + double{down.z} * double{down.z});
+  const double roll = std::abs(std::atan2(x, y)) * 180 / std::numbers::pi;
+  return kOddsAtOnce + kOddsOfSupport * support + kOddsOfRoll * roll +
+         kOddsOfHeight * std::max(0.0, std::log(height / kUsuallyHighest)) +
+         kOddsOfDepth * std::max(0.0, std::log(kUsuallyLowest / height));
+}
 
 /// The matches around a position: one of the given disparity, only farther ones, or neither.
 enum class MatchAtPlace : std::uint8_t { same, farther, none };
@@ -444,6 +468,7 @@ struct Candidate {
 struct Candidates {
   std::vector<Candidate> floors;
   std::vector<GroundPlane> walls;
+  bool has_unlikely = false;  // some of `walls` rise like a floor
 };
 
 /// Refines candidates, best first, and calls visit(plane) for each plane that differs from the earlier ones;
@@ -513,6 +538,11 @@ Candidates candidates(const std::vector<PlaneHypothesis>& list, const SampledMap
     if (!camera.may_stand_on(plane) || slope_on(plane, seen, run) != Slope::rising ||
         (textured && is_upright(plane, *textured, camera, run))) {
       found.walls.push_back(plane);
+      return;
+    }
+    if (floor_odds(plane, judged.support(), camera) < 0) {
+      found.walls.push_back(plane);
+      found.has_unlikely = true;
       return;
     }
     // A plane that only its mirror images support must be a mirror indeed.
@@ -821,13 +851,15 @@ Ground find_floor(View<const float> disparity_px, const FloorCues& cues, const s
   } else if (contrast.is_known()) {
     best = mirror(list, seen, contrast.view(), found.walls, camera, run);
   }
+  if (!best && found.has_unlikely) return refused(Refusal::unlikely);
   if (!best) {
     return refused(!found.walls.empty() || faces_a_wall(seen.points, camera, run) ? Refusal::implausible
                                                                                   : Refusal::no_plane);
   }
   const auto plane = refined(*best, seen.points, std::array{1.0F, 0.5F, 0.5F, 0.5F}, run);
-  return {plane, support(plane, disparity_px, camera.infinity, exec), residual(plane, seen.points),
-          Refusal::none};
+  const float supported = support(plane, disparity_px, camera.infinity, exec);
+  if (floor_odds(plane, double{supported}, camera) < 0) return refused(Refusal::unlikely);
+  return {plane, supported, residual(plane, seen.points), Refusal::none};
 }
 
 }  // namespace cairn

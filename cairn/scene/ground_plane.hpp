@@ -42,15 +42,18 @@ struct GroundPlane {
 };
 
 /// The reason for a missing ground.
-enum class Refusal : std::uint8_t { none, off, no_rig, too_few_matches, no_plane, implausible };
+enum class Refusal : std::uint8_t { none, off, no_rig, too_few_matches, no_plane, implausible, unlikely };
 inline constexpr std::array kRefusals{
     Choice<Refusal>{"none", Refusal::none},
     Choice<Refusal>{"switched off", Refusal::off},
     Choice<Refusal>{"no calibration", Refusal::no_rig},
     Choice<Refusal>{"too few matches", Refusal::too_few_matches},
     Choice<Refusal>{"no plane has enough support", Refusal::no_plane},
-    Choice<Refusal>{"the best plane is no floor (it does not rise towards the camera)",
-                    Refusal::implausible}};
+    Choice<Refusal>{"the best plane is no floor (it does not rise towards the camera)", Refusal::implausible},
+    Choice<Refusal>{
+        "the best plane is hardly a floor (far below the camera, right under it or rolled, with little "
+        "support)",
+        Refusal::unlikely}};
 
 struct Ground {
   std::optional<GroundPlane> plane;

@@ -10,6 +10,7 @@
 #include <cairn/io/disparity_files.hpp>
 #include <cairn/io/image_files.hpp>
 #include <cairn/pipeline/config.hpp>
+#include <cairn/pipeline/segment.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -29,6 +30,32 @@ std::vector<fs::path> pairs_below(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.path().filename() == "left.png") pairs.push_back(entry.path().parent_path());
   return pairs;
+}
+
+// A painting behind things, a poster and a wall; and a hedge with more support than the path in front of it.
+TEST(RealGrounds, OfBackgroundsAreNoFloors) {
+  const auto ground_of = [](const fs::path& folder) {
+    Config config = Config::preset("default");
+    const auto images = io::load_pair(folder / "left.png", folder / "right.png");
+    std::optional<StereoRig> rig;
+    if (fs::exists(folder / "calib.txt")) {
+      const auto calibration = io::load_calibration(folder / "calib.txt");
+      rig = calibration.rig;
+      config.match.num_disparities = calibration.num_disparities.value_or(config.match.num_disparities);
+    }
+    return segment(StereoPair::from(images.left.gray, images.right.gray, images.left.rgb), rig, config, {})
+        .ground;
+  };
+  for (const char* name : {"middlebury2001/barn2", "middlebury2001/poster", "middlebury2006/Lampshade2"}) {
+    const fs::path folder = collection() / "real" / name;
+    if (!fs::exists(folder)) GTEST_SKIP() << "no collection of pairs here (CAIRN_DATA)";
+    const Ground ground = ground_of(folder);
+    EXPECT_FALSE(ground.plane) << name;
+    EXPECT_EQ(ground.refusal, Refusal::unlikely) << name;
+  }
+  const Ground path = ground_of(collection() / "rendered/train_outdoor/320x240/out_s19");
+  ASSERT_TRUE(path.plane);
+  EXPECT_GT(path.plane->disparity_px(160, 239), 12);  // of the hedge: 2
 }
 
 class GoodPairs : public testing::TestWithParam<const char*> {};

@@ -272,6 +272,24 @@ TEST(GroundAutomatic, AWallIsNoFloor) {
   }
 }
 
+/// A plane that fills the image as a floor does, seen from this height in baselines.
+Room slope_at(float height, float tangent_of_roll = 0) {
+  constexpr float kWidth = 320;  // the focal length without a calibration
+  constexpr float kPitch = 0.7F;
+  const float b = std::cos(kPitch) / height;
+  const GroundPlane plane{tangent_of_roll * b, b,
+                          kWidth * std::sin(kPitch) / height - 119.5F * b - tangent_of_roll * b * 159.5F};
+  return {.floor = plane, .wall_px = -1000, .noise_px = 0.1F, .wrong = 0};
+}
+
+TEST(GroundAutomatic, IsNoneFarBelowTheCamera) {
+  EXPECT_FINDS(slope_at(20), 0.25F);
+  EXPECT_FINDS(slope_at(60), 0.25F);  // everything lies on it
+  const Ground far = found_in(slope_at(150));
+  EXPECT_FALSE(far.plane);
+  EXPECT_EQ(far.refusal, Refusal::unlikely);
+}
+
 TEST(GroundAutomatic, FurnitureInFrontOfAWallIsNoFloor) {
   // Nearer objects are lower in the image, so a slanted plane fits across them.
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
