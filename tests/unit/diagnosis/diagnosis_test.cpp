@@ -409,6 +409,24 @@ TEST_F(Diagnosis, JudgesASegmentedFrameByTheResultsOfItsStages) {
   EXPECT_NE(says(found).find("match.num_disparities=48"), std::string::npos) << says(found);
 }
 
+TEST_F(Diagnosis, NotesThatMuchLiesBelowTheFloor) {
+  const Config config = sample_.suited();
+  Frame frame = segment(sample_.pair(), rig_, config, {});
+  ASSERT_TRUE(frame.ground.plane);
+  const auto below = [&](int rows) {
+    for (int y = 0; y < rows; ++y) {
+      std::fill_n(frame.disparity.reject.row(y), frame.disparity.reject.width(), Reject::below_ground);
+    }
+    return diagnose(frame, left(), right(), rig_, config, {});
+  };
+  EXPECT_EQ(names(below(frame.disparity.reject.height() / 8)), "");
+  const auto found = below(frame.disparity.reject.height() / 2);
+  finds(found, FindingKind::below_floor, Severity::note);
+  frame.ground.plane.reset();  // there is nothing to be below of
+  frame.ground.refusal = Refusal::unlikely;
+  finds(below(0), FindingKind::no_floor, Severity::note);
+}
+
 TEST_F(Diagnosis, DetectsWhichCameraIsBlurred) {
   const auto soft = blurred(right(), 2);
   const auto soft_left = blurred(left(), 2);
