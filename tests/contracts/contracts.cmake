@@ -42,6 +42,8 @@ cairn_contract(installed_headers_are_complete ${here}/headers_are_complete.sh ${
 cairn_contract(no_include_runs_upwards ${here}/no_upward_includes.sh ${PROJECT_SOURCE_DIR})
 cairn_contract(links_of_the_pages_exist ${here}/links_exist.sh ${PROJECT_SOURCE_DIR})
 cairn_contract(no_temporaries_in_shared_folders ${here}/no_shared_temporaries.sh ${PROJECT_SOURCE_DIR})
+cairn_contract(release_refuses ${here}/release_refuses.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(contracts/release_refuses PROPERTIES SKIP_RETURN_CODE 77)
 # No generator expression: the comma of "address,undefined" would split its arguments.
 set(consumer_flags)
 if(CAIRN_SANITIZE)
