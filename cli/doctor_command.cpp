@@ -14,6 +14,8 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "findings.hpp"
+#include "keep_inputs.hpp"
+#include "rig_report.hpp"
 #include "terminal.hpp"
 
 namespace cairn::cli {
@@ -29,6 +31,8 @@ struct DoctorOptions {
   InputOptions input;
   ExecOptions exec;
   std::optional<std::string> json;
+  std::optional<std::string> report;
+  bool report_images = false;
   int frames = 40;
   bool strict = false;
 };
@@ -256,8 +260,7 @@ void check_calibration(const std::string& path) {
   }
 }
 
-Diagnosis examine_all(const DoctorOptions& options) {
-  const std::vector<io::FrameFiles> frames = frames_of(options.input);
+Diagnosis examine_all(const DoctorOptions& options, const std::vector<io::FrameFiles>& frames) {
   (void)resolve(options.input.config);  // reports bad options before any work
   check_calibration(options.input.calib);
   const Exec exec = make_exec(options.exec);
@@ -458,7 +461,7 @@ std::string verdict(const Diagnosis& diagnosis, const std::vector<Omission>& omi
 
 // ---- JSON ----
 
-std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
+Json diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   Json j{{"cairn", CAIRN_VERSION}, {"broken", is_broken}, {"pairs_in_all", diagnosis.pairs_in_all}};
   j["findings"] = Json::array();
   for (const Finding& finding : diagnosis.findings)
@@ -482,13 +485,29 @@ std::string diagnosis_json(const Diagnosis& diagnosis, bool is_broken) {
   j["synchrony"] = nullptr;
   if (diagnosis.sequence && !diagnosis.sequence->names.empty())
     j["synchrony"] = output::json_of(diagnosis.sequence->synchrony, diagnosis.sequence->names);
-  return output::json_text(j, 1) + "\n";
+  return j;
+}
+
+/// Everything about the rig that helps to find a fault from afar.
+std::string report_text(const std::vector<io::FrameFiles>& frames, const Diagnosis& diagnosis,
+                        const DoctorOptions& options, bool is_broken) {
+  const io::FrameFiles& first = frames[diagnosis.indices.front()];
+  Json report = rig_report(first, options.input, options.exec, options.report_images);
+  report["diagnosis"] = diagnosis_json(diagnosis, is_broken);
+  return output::json_text(without_folders(std::move(report), frames, options.input), 1) + "\n";
 }
 
 int examine_and_tell(const DoctorOptions& options) {
-  const Diagnosis diagnosis = examine_all(options);
+  if (options.report) require_writable(*options.report);
+  const std::vector<io::FrameFiles> frames = frames_of(options.input);
+  if (options.report) {
+    for (const io::FrameFiles& frame : frames) keep_inputs({*options.report}, frame, options.input);
+  }
+  const Diagnosis diagnosis = examine_all(options, frames);
   const bool broken = is_broken(diagnosis.findings);
-  if (options.json) io::write_file(*options.json, diagnosis_json(diagnosis, broken));
+  if (options.json)
+    io::write_file(*options.json, output::json_text(diagnosis_json(diagnosis, broken), 1) + "\n");
+  if (options.report) io::write_file(*options.report, report_text(frames, diagnosis, options, broken));
   const std::vector<Omission> omitted = omissions(diagnosis);
   for (const std::string& part :
        {numbers_text(diagnosis.pairs), histogram_text(histogram_of(diagnosis.pairs)),
@@ -533,6 +552,11 @@ Work declare_doctor(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--json", options->json, "JSON file for findings and measurements")->type_name("FILE");
+  auto* report = app.add_option("--report", options->report,
+                                "JSON file to attach to an issue; no images, no folder names")
+                     ->type_name("FILE");
+  app.add_flag("--report-images", options->report_images, "the first pair's images in --report, too")
+      ->needs(report);
   app.add_flag("--strict", options->strict, "exit code 1 for warnings too");
   app.add_flag_callback(
          "--explain",

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "common.hpp"
+#include "rig_report.hpp"
 
 namespace cairn::cli {
 namespace {
@@ -16,13 +17,6 @@ std::string names(const std::vector<Target>& targets) {
   return all;
 }
 
-/// An optional part of the build, and the package it needs.
-std::string built_in(std::string what, bool is_in, const char* packages) {
-  constexpr std::size_t kColumn = 42;
-  what.resize(kColumn, ' ');
-  return "  " + what + (is_in ? "yes" : std::string("no; needs ") + packages) + "\n";
-}
-
 int show(const ExecOptions& options) {
   const Exec exec = make_exec(options);
   std::cout << "cairn " << CAIRN_VERSION << "\n"
@@ -31,27 +25,37 @@ int show(const ExecOptions& options) {
             << "  supported  " << names(supported_targets()) << "\n"
             << "  active     " << name(active_target(exec)) << "\n"
             << "threads      " << exec.threads() << "\n"
-            << "built in\n"
-            << built_in("SIMD (Highway)", CAIRN_WITH_HWY != 0, "libhwy-dev, CAIRN_SIMD=ON")
-            << built_in("threads (oneTBB)", CAIRN_WITH_TBB != 0, "libtbb-dev, CAIRN_TBB=ON")
-            << built_in("calibrate, rectify", CAIRN_WITH_CALIBRATION != 0, "libopencv-calib3d-dev")
-            << built_in("OpenCV's matchers in bench", !timing::opencv_version().empty(),
-                        "libopencv-calib3d-dev")
-            << built_in("sequences: follow, odometry, map, record", CAIRN_WITH_SEQUENCES != 0,
-                        "libopencv-video-dev libopencv-calib3d-dev libeigen3-dev libdlib-dev "
-                        "libsqlitecpp-dev")
-            << built_in("videos as sequences", CAIRN_WITH_VIDEO != 0, "libopencv-videoio-dev")
-            << built_in("cameras by GStreamer: gst:, rtsp://", CAIRN_WITH_GSTREAMER != 0,
-                        "libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev")
-            << built_in("recordings (MCAP), packed batch results", CAIRN_WITH_ZSTD != 0, "libzstd-dev")
-            << built_in("live views: live --view", CAIRN_WITH_VIEW != 0, "libboost-dev libssl-dev")
-            << built_in("topics of ROS 2 (Cyclone DDS)", CAIRN_WITH_DDS != 0, "cyclonedds-dev")
-            << built_in("manual pages", CAIRN_WITH_MANUAL != 0, "help2man")
-            << built_in("Python module", CAIRN_WITH_PYTHON != 0, "python3-dev pybind11-dev, CAIRN_PYTHON=ON");
+            << "built in\n";
+  for (const BuiltPart& part : built_parts()) {
+    constexpr std::size_t kColumn = 42;
+    std::string what = part.what;
+    what.resize(kColumn, ' ');
+    std::cout << "  " << what << (part.is_in ? "yes" : std::string("no; needs ") + part.packages) << "\n";
+  }
   return 0;
 }
 
 }  // namespace
+
+std::vector<BuiltPart> built_parts() {
+  return {
+      {"SIMD (Highway)", CAIRN_WITH_HWY != 0, "libhwy-dev, CAIRN_SIMD=ON"},
+      {"threads (oneTBB)", CAIRN_WITH_TBB != 0, "libtbb-dev, CAIRN_TBB=ON"},
+      {"calibrate, rectify", CAIRN_WITH_CALIBRATION != 0, "libopencv-calib3d-dev"},
+      {"OpenCV's matchers in bench", !timing::opencv_version().empty(), "libopencv-calib3d-dev"},
+      {"sequences: follow, odometry, map, record", CAIRN_WITH_SEQUENCES != 0,
+       "libopencv-video-dev libopencv-calib3d-dev libeigen3-dev libdlib-dev "
+       "libsqlitecpp-dev"},
+      {"videos as sequences", CAIRN_WITH_VIDEO != 0, "libopencv-videoio-dev"},
+      {"cameras by GStreamer: gst:, rtsp://", CAIRN_WITH_GSTREAMER != 0,
+       "libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev"},
+      {"recordings (MCAP), packed batch results", CAIRN_WITH_ZSTD != 0, "libzstd-dev"},
+      {"live views: live --view", CAIRN_WITH_VIEW != 0, "libboost-dev libssl-dev"},
+      {"topics of ROS 2 (Cyclone DDS)", CAIRN_WITH_DDS != 0, "cyclonedds-dev"},
+      {"manual pages", CAIRN_WITH_MANUAL != 0, "help2man"},
+      {"Python module", CAIRN_WITH_PYTHON != 0, "python3-dev pybind11-dev, CAIRN_PYTHON=ON"},
+  };
+}
 
 Work declare_info(CLI::App& app) {
   auto options = std::make_shared<ExecOptions>();

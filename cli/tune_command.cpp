@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
-#include <unistd.h>
-
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/io/atomic_file.hpp>
@@ -19,6 +17,7 @@
 #include "commands.hpp"
 #include "common.hpp"
 #include "interrupt.hpp"
+#include "keep_inputs.hpp"
 #include "terminal.hpp"
 #include "tune_sequence.hpp"
 #include "tuning_frames.hpp"
@@ -95,16 +94,6 @@ Task read_task(const TuneOptions& options) {
   task.files = load_tuning_files(options.folders, options.input, options.truth);
   for (const TuningFiles& files : task.files) task.frames.push_back(files.frame());
   return task;
-}
-
-void require_writable(const std::string& file) {
-  const fs::path folder = fs::path(file).has_parent_path() ? fs::path(file).parent_path() : fs::path(".");
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) throw Error(file + ": is a folder, expected a file name");
-  if (!fs::is_directory(folder, ignored))
-    throw Error(file + ": cannot be written, no such folder: " + folder.string());
-  if (access(folder.c_str(), W_OK) != 0)
-    throw Error(file + ": cannot be written, the folder " + folder.string() + " is write-protected");
 }
 
 // ---- the search ----

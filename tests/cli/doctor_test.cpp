@@ -67,6 +67,78 @@ TEST_F(Doctor, WarningsAloneExitWithZeroUnlessStrict) {
   EXPECT_NE(outcome.out.find("warning  disparity range too small: "), std::string::npos) << outcome.out;
 }
 
+/// A folder with a pair of the samples, whose calibration has a key without meaning.
+fs::path rig_folder(const fs::path& folder) {
+  fs::create_directories(folder);
+  for (const char* file : {"left.png", "right.png"})
+    fs::copy_file(samples::folder("overlap") / file, folder / file);
+  write(folder / "calib.txt",
+        content(samples::folder("overlap") / "calib.txt") + "\nserial_xyz=SECRET-4711\n");
+  return folder;
+}
+
+TEST_F(Doctor, ReportDescribesTheRig) {
+  const fs::path rig = rig_folder(at("Jane Doe/my rig"));
+  const Outcome outcome =
+      run({"doctor", rig, "--set", "match.method=window", "--report", path("report.json"), "--threads", "1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::string text = content(at("report.json"));
+  const Json j = Json::parse(text);
+  EXPECT_EQ("cairn " + j["cairn"].get<std::string>() + "\n", run({"--version"}).out);
+  EXPECT_EQ(j["build"]["threads"], 1);
+  EXPECT_TRUE(j["build"]["target"].is_string());
+  EXPECT_TRUE(j["build"]["built_in"].contains("SIMD (Highway)"));
+  EXPECT_NE(j["system"]["os"], "");
+  EXPECT_GT(j["system"]["processors"], 0);
+  EXPECT_EQ(j["calibration"]["file"], "calib.txt");
+  const auto& keys = j["calibration"]["keys"];
+  EXPECT_NE(std::find(keys.begin(), keys.end(), "serial_xyz"), keys.end()) << keys;
+  EXPECT_GT(j["calibration"]["rig"]["baseline_m"], 0);
+  EXPECT_GT(j["calibration"]["rig"]["focal_px"], 0);
+  EXPECT_EQ(j["calibration"]["remarks"].size(), 1U) << j["calibration"];
+  EXPECT_EQ(j["images"]["left"]["type"], ".png");
+  EXPECT_EQ(j["images"]["left"]["size"], j["images"]["right"]["size"]);
+  EXPECT_EQ(j["frame"]["changed_options"]["match.method"], "window") << j["frame"];
+  EXPECT_GT(j["frame"]["total_ms"], 0);
+  EXPECT_FALSE(j["frame"]["stages_ms"].empty());
+  EXPECT_EQ(j["diagnosis"]["pairs"][0]["name"], "pair");
+  EXPECT_GT(j["diagnosis"]["pairs"][0]["measured"]["found_points"], 20);
+}
+
+TEST_F(Doctor, ReportHasNoFolderAndNoImageUnlessAllowed) {
+  const fs::path rig = rig_folder(at("Jane Doe/my rig"));
+  write(rig / "calib.txt",
+        "fx=-5\nfy=-5\nbaseline=0.1\ncx=10\ncy=10\nserial_xyz=SECRET-4711\n");  // its message has the path
+  const Outcome outcome = run({"doctor", rig / "left.png", rig / "right.png", "--calib", rig / "calib.txt",
+                               "--report", path("report.json")});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  const std::string text = content(at("report.json"));
+  const Json j = Json::parse(text);
+  EXPECT_EQ(j["diagnosis"]["broken"], true);
+  EXPECT_TRUE(j["calibration"]["error"].get<std::string>().starts_with("calib.txt: ")) << j["calibration"];
+  for (const std::string& word : {at("").string(), std::string("Jane"), std::string("my rig"),
+                                  std::string("SECRET"), std::string("data:image"), std::string("\"png\"")})
+    EXPECT_EQ(text.find(word), std::string::npos) << word << "\n" << text;
+
+  const fs::path pair = rig_folder(at("pair"));
+  EXPECT_EQ(run({"doctor", pair, "--report", path("with.json"), "--report-images"}).code, 0);
+  const Json with = Json::parse(content(at("with.json")));
+  for (const char* side : {"left", "right"})
+    EXPECT_TRUE(with["images"][side]["png"].get<std::string>().starts_with("data:image/png;base64,iVBOR"));
+}
+
+TEST_F(Doctor, RefusesAReportThatCannotBeWrittenBeforeTheWork) {
+  const std::string pair = sample("overlap");
+  refuses({"doctor", pair, "--report", path("none/report.json")},
+          {"none/report.json: cannot be written", "no such folder"});
+  refuses({"doctor", pair, "--report", path("")}, {"is a folder, expected a file name"});
+  refuses({"doctor", pair, "--report-images"}, {"--report"});
+  // The missing input is not even looked at.
+  refuses({"doctor", path("missing"), "--report", path("none/r.json")}, {"none/r.json: cannot be written"});
+  const fs::path rig = rig_folder(at("rig"));
+  refuses({"doctor", rig, "--report", (rig / "calib.txt").string()}, {"calib.txt: is read by this run"});
+}
+
 TEST_F(Doctor, DetectsImagesOfDifferentSizes) {
   const auto pair = pair_in("pair");
   const auto other = pair_in("other", {64, 48});
