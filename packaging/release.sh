@@ -23,11 +23,15 @@ mode=${1:-}
 version=$(sed -n 's/^project(cairn VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)
 [[ $version =~ ^[0-9]+\.[0-9]+\.[0-9]+$ ]] ||
   refuse "CMakeLists.txt: found version '$version' in project(), expected three numbers"
-repeated() {  # FILE VERSION
-  [[ $2 == "$version" ]] || refuse "$1: found version '$2', expected $version as in CMakeLists.txt"
+repeated() {  # FILE FOUND EXPECTED
+  [[ $2 == "$3" ]] || refuse "$1: found version '$2', expected $3 as in CMakeLists.txt"
 }
-repeated ros2/package.xml "$(sed -n 's|.*<version>\(.*\)</version>.*|\1|p' ros2/package.xml)"
-repeated CITATION.cff "$(sed -n 's/^version: *//p' CITATION.cff)"
+repeated ros2/package.xml "$(sed -n 's|.*<version>\(.*\)</version>.*|\1|p' ros2/package.xml)" "$version"
+repeated CITATION.cff "$(sed -n 's/^version: *//p' CITATION.cff)" "$version"
+for page in docs/install.md tests/consumer/CMakeLists.txt; do
+  repeated "$page" "$(sed -n 's/.*find_package(cairn \([0-9.]*\) .*/\1/p' "$page" | head -1)" "${version%.*}"
+done
+repeated docs/install.md "$(sed -n 's/.*`libcairn\([0-9][0-9.]*\)`.*/\1/p' docs/install.md | head -1)" "${version%.*}"
 [[ $mode != --versions ]] || exit 0
 
 commit=$(git rev-parse --verify --quiet HEAD) || refuse "$PWD: no commit, expected a git repository"

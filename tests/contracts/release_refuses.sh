@@ -19,6 +19,9 @@ repo=$scratch/repo
 mkdir -p "$repo/packaging" "$repo/docs" "$repo/python/tools"
 cp -r "$source_dir"/{CMakeLists.txt,CITATION.cff,LICENSE,ros2,.gitignore} "$repo/"
 cp "$source_dir/packaging/release.sh" "$repo/packaging/"
+mkdir -p "$repo/tests/consumer"
+cp "$source_dir/docs/install.md" "$repo/docs/"
+cp "$source_dir/tests/consumer/CMakeLists.txt" "$repo/tests/consumer/"
 version=$(sed -n 's/^project(cairn VERSION \([0-9.]*\) .*/\1/p' "$repo/CMakeLists.txt")
 printf '# Changelog\n\n## [%s] - 2026-01-02\n\n- A line.\n\n## [0.0.1] - 2025-01-02\n\n- Older.\n' "$version" >"$repo/CHANGELOG.md"
 cat >"$repo/dev" <<'DEV'
@@ -75,6 +78,9 @@ refuses "ros2/package.xml: found version '9.9.9', expected $version"
 again
 sed -i 's|^version: .*|version: 9.9.9|' "$repo/CITATION.cff" && commit version
 refuses "CITATION.cff: found version '9.9.9', expected $version"
+again
+sed -i 's|find_package(cairn [0-9.]*|find_package(cairn 9.9|' "$repo/tests/consumer/CMakeLists.txt" && commit version
+refuses "tests/consumer/CMakeLists.txt: found version '9.9', expected ${version%.*}"
 again
 for command in test package; do
   echo $command >"$repo/dev.fails" && commit fails
