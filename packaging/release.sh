@@ -89,7 +89,7 @@ archive() {  # NAME PATH…: of the last commit
 licences_of() {  # PACKAGE
   local file=/usr/share/doc/$1/copyright names
   [[ -r $file ]] || { echo "no $file"; return; }
-  names=$(sed -n 's/^License: *\([^ ].*\)$/\1/p' "$file" | tr -d '|' | sort -u | paste -sd ';' | sed 's/;/; /g')
+  names=$(sed -n 's/^License: *\([^ ].*\)$/\1/p' "$file" | tr -d '|\t' | sort -u | paste -sd ';' | sed 's/;/; /g')
   echo "${names:-see $file}"
 }
 
@@ -108,11 +108,13 @@ Nothing of these is in the source archive. The packages and the wheel use the sh
 | package | version | how it is used | licences named in its copyright file |
 |---|---|---|---|
 TEXT
-  local deb package
+  local deb package boost
+  # libboost-dev only depends on the package with the headers.
+  boost=$(dpkg-query -W -f '${Depends}' libboost-dev 2>/dev/null | sed 's/[ (,].*//') || true
   for deb in "$new"/*.deb; do dpkg-deb -f "$deb" Depends; done |
     tr ',|' '\n\n' | sed 's/(.*//; s/ //g; /^$/d; /cairn/d' | sort -u |
     while read -r package; do third_party_row "$package" "at run time"; done
-  for package in libboost-dev libcli11-dev libdlib-dev libeigen3-dev libhwy-dev libsqlitecpp-dev nlohmann-json3-dev pybind11-dev; do
+  for package in ${boost:-libboost-dev} libcli11-dev libdlib-dev libeigen3-dev libhwy-dev libsqlitecpp-dev nlohmann-json3-dev pybind11-dev; do
     third_party_row "$package" "compiled in"
   done
 }
