@@ -129,8 +129,8 @@ FrameList paired(const Side& left, const Side& right, const StampPairs& pairs, c
 }
 
 FrameList paired_by_stamps(const Side& left, const Side& right, const SourceOptions& options) {
-  check_rising(*left.stamps, stems_of(left.files), left.stamps_from);
-  check_rising(*right.stamps, stems_of(right.files), right.stamps_from);
+  check_unit(*left.stamps, left.stamps_from);
+  check_unit(*right.stamps, right.stamps_from);
   FrameList list =
       paired(left, right, pair_by_stamps(*left.stamps, *right.stamps, options.max_skew_ms), options);
   if (!list.frames.empty()) return list;
@@ -158,7 +158,7 @@ StampPairs pair_by_keys(const std::vector<Key>& left, const std::vector<Key>& ri
   return found;
 }
 
-/// Common to all kinds: the range, and checking the order of stamps.
+/// Common to all kinds: the range, and checking the unit of stamps.
 FrameList finished(FrameList list, const SourceOptions& options, const std::string& source) {
   const std::size_t all = list.frames.size();
   std::erase_if(list.frames, [&](const ListedFrame& frame) { return !options.frames.contains(frame.index); });
@@ -167,12 +167,8 @@ FrameList finished(FrameList list, const SourceOptions& options, const std::stri
                 ", and none of them is in --frames");
   }
   std::vector<Stamp> stamps;
-  std::vector<std::string> names;
-  for (const ListedFrame& frame : list.frames) {
-    stamps.push_back(frame.stamp);
-    names.push_back(frame.name);
-  }
-  check_rising(stamps, names, list.stamps_from);
+  for (const ListedFrame& frame : list.frames) stamps.push_back(frame.stamp);
+  check_unit(stamps, list.stamps_from);
   return list;
 }
 
@@ -400,10 +396,10 @@ std::map<fs::path, Stamp> stamps_in(const fs::path& folder, std::vector<io::Fram
   if (is_in_two_folders(frames.front())) {
     const Side left = left_side(folder, frames.front().left.parent_path());
     if (!left.stamps) return by_image;
-    check_rising(*left.stamps, stems_of(left.files), left.stamps_from);
+    check_unit(*left.stamps, left.stamps_from);
     for (std::size_t i = 0; i < left.files.size(); ++i) by_image[left.files[i]] = (*left.stamps)[i];
   } else if (const std::optional<Stamps> stamps = stamps_of(folder, names_of(frames))) {
-    check_rising(stamps->all, names_of(frames), stamps->from);
+    check_unit(stamps->all, stamps->from);
     for (std::size_t i = 0; i < frames.size(); ++i) by_image[frames[i].left] = stamps->all[i];
   }
   return by_image;

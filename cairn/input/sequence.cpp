@@ -67,6 +67,7 @@ class FileSequence : public SourceSequence {
   std::optional<SequenceFrame> advance() override {
     while (at_ < list_.frames.size()) {
       const ListedFrame& files = list_.frames[at_++];
+      if (!watch_.continues(files.stamp, files.name, remarks_)) continue;
       try {
         return load(files);
       } catch (const Error& error) {

@@ -25,7 +25,7 @@ namespace cairn::input {
 struct SequenceFrame {
   std::string name;       // of the folder, of the left file without extension, or the number in a video
   std::size_t index = 0;  // in the source, from 0; --frames counts these
-  Stamp stamp;            // later than the one before
+  Stamp stamp;            // later than the one before, unless the clock was set back, see clock_step()
   io::LoadedImage left;
   Image<Gray> right;
   bool after_gap = false;  // more than SourceOptions::max_gap_s after the frame before
@@ -100,8 +100,8 @@ class Sequence {
   Sequence& operator=(const Sequence&) = delete;
 
   /// The next pair; nullopt after the last. Throws Error naming the file or frame if its size or calibration
-  /// differs from the first frame, or its stamp is not later than the one before. A frame that cannot be
-  /// decoded is skipped with a remark.
+  /// differs from the first frame. A frame that cannot be decoded, or that is not later than the one before, is
+  /// skipped with a remark.
   virtual std::optional<SequenceFrame> next() = 0;
   /// The largest number of frames that next() delivers; an estimate for a video, or unknown.
   [[nodiscard]] virtual std::optional<std::size_t> size() const = 0;

@@ -177,6 +177,7 @@ class VideoSequence : public SourceSequence {
   std::optional<SequenceFrame> advance() override {
     while (std::optional<NextFrame> both = next_pair()) {
       const std::string name = io::number_text(both->index);
+      if (!watch_.continues(both->stamp, name, remarks_)) continue;
       if (!both->pair) {
         remark_on({"frame that cannot be read", 1, name, true, true});
         continue;
