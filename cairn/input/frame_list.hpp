@@ -21,6 +21,7 @@ struct ListedFrame {
   std::filesystem::path right;
   std::optional<std::filesystem::path> calib;  // of this frame
   Stamp stamp;
+  io::Layout layout = io::Layout::one;  // otherwise left and right are one file with both images
 };
 
 struct FrameList {

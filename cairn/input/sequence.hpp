@@ -69,7 +69,7 @@ FrameRange parse_frame_range(std::string_view text);
 /// The options of reading a source.
 struct SourceOptions {
   std::string calib;   // overrides the calibration of the source
-  std::string layout;  // of one video: side_by_side or top_bottom
+  std::string layout;  // of one video, camera or folder with both images in one: side_by_side or top_bottom
   double rate_hz = 0;  // replaces missing stamps and those of a video; 0 = from the source, else 10
   FrameRange frames;
   double max_gap_s = 1.0;
@@ -131,6 +131,7 @@ class Sequence {
 
 /// Opens a source, recognised by its content or name:
 /// - a folder of frames (docs/formats.md), of KITTI odometry or raw recordings, of EuRoC or TUM-VI;
+/// - a folder of images with both images each, with options.layout;
 /// - "DIR_L,DIR_R", two folders of images, paired in order or by stamps; "left_%04d.png,right_%04d.png", two
 ///   patterns;
 /// - a video with options.layout, or "l.mp4,r.mp4"; a recording (MCAP);

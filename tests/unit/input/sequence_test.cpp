@@ -396,6 +396,31 @@ TEST(SequenceOfFolders, ReportsAFrozenCamera) {
   EXPECT_TRUE(has(sequence->remarks()[0].what, {"right image repeated from the frame before"}));
 }
 
+TEST(SequenceOfFolders, ReadsImagesThatHoldBoth) {
+  const TemporaryFolder folder;
+  (void)folder.with("calib.txt", "fx=20\nfy=20\ncx=3\ncy=3\nbaseline=0.1\n");
+  for (const int i : {9, 10}) {
+    const Image<Gray> left = picture(i);
+    const Image<Gray> right = picture(100 + i);
+    Image<Gray> both({2 * kSize.width, kSize.height});
+    for (int y = 0; y < kSize.height; ++y) {
+      std::copy_n(left.row(y), kSize.width, both.row(y));
+      std::copy_n(right.row(y), kSize.width, both.row(y) + kSize.width);
+    }
+    io::save_png(folder.path() / (std::to_string(i) + ".png"), both.view());
+  }
+  SourceOptions options;
+  options.layout = "side_by_side";
+  const auto sequence = open(folder, options);
+  EXPECT_EQ(sequence->image_size(), kSize);
+  EXPECT_TRUE(sequence->rig());
+  const auto frames = all_of(*sequence);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].name, "9");
+  EXPECT_TRUE(is_equal(frames[1].left.gray, picture(10)));
+  EXPECT_TRUE(is_equal(frames[1].right, picture(110)));
+}
+
 TEST(SequenceOfFolders, KeepsOneScaleForDeepImages) {
   const TemporaryFolder folder;
   for (const auto& [name, value] : {std::pair{"0", 4000}, std::pair{"1", 1000}}) {
@@ -452,7 +477,7 @@ TEST(Sources, RefuseInvalidOnes) {
   options.layout = "diagonal";
   EXPECT_TRUE(has(refused(at, options), {"--layout", "diagonal", "side_by_side"}));
   options.layout = "top_bottom";
-  EXPECT_TRUE(has(refused(at, options), {"--layout top_bottom", "is none"}));
+  EXPECT_TRUE(has(refused(at, options), {"contains no images", "--layout"}));
   options = {};
   options.topics = "/a,/b";
   EXPECT_TRUE(has(refused(at, options), {"--topics /a,/b", "is none"}));
