@@ -246,7 +246,10 @@ Work declare_batch(CLI::App& app) {
   app.add_option("--calib", options->inputs.calib, "plan: calibration; default: the one next to the images")
       ->type_name("FILE");
   app.add_flag("--rectify", options->inputs.rectify, "plan: rectification of raw images by --calib");
-  app.add_option("--layout", options->inputs.layout, "plan: layout of videos: side_by_side or top_bottom")
+  app.add_flag("--scale-calibration", options->inputs.scale_calibration,
+               "plan: scaling of a calibration for images of another size of the same shape");
+  app.add_option("--layout", options->inputs.layout,
+                 "plan: layout of videos and images: side_by_side or top_bottom")
       ->type_name("NAME");
   app.add_option("--frames", options->inputs.frames,
                  "plan: frames of each input: FIRST:END, FIRST:END:STEP, or the number of first frames")
@@ -274,7 +277,8 @@ Work declare_batch(CLI::App& app) {
         }
       }
     };
-    of("plan", {"--calib", "--rectify", "--layout", "--frames", "--tracks", "--preset", "--config", "--set"});
+    of("plan", {"--calib", "--scale-calibration", "--rectify", "--layout", "--frames", "--tracks", "--preset",
+                "--config", "--set"});
     of("work", {"--shard", "--keep", "--threads", "--target"});
     of("merge", {"--partial"});
     if (!options->output.empty() && (options->action == "work" || options->action == "status"))

@@ -78,7 +78,8 @@ class Planner {
       io::FrameFiles files{left.stem().string(), left.parent_path(), left, two->second, {}};
       files.calib = io::calibration_in(left.parent_path().empty() ? "." : left.parent_path());
       add_files(name.empty() ? files.name : name, files);
-    } else if (!two && is_folder(input) && !inputs_.rectify && !is_of_raw_cameras(input)) {
+    } else if (!two && is_folder(input) && !inputs_.rectify && inputs_.layout.empty() &&
+               !is_of_raw_cameras(input)) {
       add_folder(input, name);
     } else {
       add_sequence(input, two, name);
@@ -120,6 +121,7 @@ class Planner {
       how["calib_sha256"] = sum_of(whole(*calib));
     }
     if (files.grey_cameras) how["grey_cameras"] = true;
+    if (inputs_.scale_calibration) how["scale_calibration"] = true;
     frames_.push_back({name, std::move(how)});
   }
 
@@ -129,6 +131,7 @@ class Planner {
     sequence.source = two ? whole(two->first) + "," + whole(two->second) : whole(input);
     sequence.layout = inputs_.layout;
     sequence.rectify = inputs_.rectify;
+    sequence.scale_calibration = inputs_.scale_calibration;
     sequence.step = range_.step;
     if (!inputs_.calib.empty()) sequence.calib = whole(inputs_.calib);
     for (const std::size_t index : sequence_frames(sequence, range_, pool_)) {
@@ -138,6 +141,7 @@ class Planner {
       if (sequence.step != 1) how["step"] = sequence.step;
       if (!sequence.layout.empty()) how["layout"] = sequence.layout;
       if (sequence.rectify) how["rectify"] = true;
+      if (sequence.scale_calibration) how["scale_calibration"] = true;
       if (!sequence.calib.empty()) {
         how["calib"] = sequence.calib;
         how["calib_sha256"] = sum_of(sequence.calib);
@@ -187,6 +191,7 @@ BatchSequence sequence_of(const PlannedFrame& frame) {
           text_at(frame, "calib"),
           text_at(frame, "layout"),
           value_at(frame, "rectify", false),
+          value_at(frame, "scale_calibration", false),
           value_at(frame, "step", std::size_t{1}),
           value_at(frame, "first", std::size_t{0})};
 }
@@ -248,6 +253,7 @@ BatchFrame BatchReader::read(const PlannedFrame& frame) {
   files.grey_cameras = value_at(frame, "grey_cameras", false);
   InputOptions input;
   input.config = config_;
+  input.scale_calibration = value_at(frame, "scale_calibration", false);
   return {load_frame(files, input, exec_), {}};
 }
 

@@ -22,6 +22,7 @@ struct BatchInputs {
   std::string layout;  // of a single video
   std::string frames;  // of each input: "10:60:2"
   bool rectify = false;
+  bool scale_calibration = false;
   bool tracks = false;  // each input is a sequence, tracked from its first frame
 };
 
@@ -50,6 +51,7 @@ struct BatchSequence {
   std::string calib;
   std::string layout;
   bool rectify = false;
+  bool scale_calibration = false;
   std::size_t step = 1;   // between planned frames
   std::size_t first = 0;  // with tracks: the first frame
 

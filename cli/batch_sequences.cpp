@@ -24,15 +24,18 @@ std::unique_ptr<input::Sequence> open(const BatchSequence& sequence, const input
   options.calib = sequence.calib;
   options.layout = sequence.layout;
   options.rectify = sequence.rectify;
+  options.scale_calibration = sequence.scale_calibration;
   options.frames = range;
   return input::open_sequence(sequence.source, options, pool);
 }
 
 /// Frame folders keep their numbers if a right image is missing; other sources do not.
-std::optional<std::size_t> count_in_folder(const std::string& source) {
+std::optional<std::size_t> count_in_folder(const BatchSequence& sequence) {
+  const std::string& source = sequence.source;
   std::error_code unknown;
   if (!std::filesystem::is_directory(source, unknown)) return std::nullopt;
   try {
+    if (!sequence.layout.empty()) return io::find_both(source, io::layout_of(sequence.layout)).size();
     return io::find_frames(source).size();
   } catch (const Error&) {  // folders of raw cameras, where all frames are pairs
     return std::nullopt;
@@ -58,8 +61,7 @@ std::vector<std::size_t> sequence_frames(const BatchSequence& sequence, const in
   const bool is_video = std::filesystem::is_regular_file(left, unknown) || input::recording_in(left);
   if (!is_video) {  // image lists: no need to decode any
     std::size_t end = range.first + opened->size().value_or(0) * range.step;
-    if (const auto all = count_in_folder(sequence.source))
-      end = std::min(*all, range.last_excluded.value_or(*all));
+    if (const auto all = count_in_folder(sequence)) end = std::min(*all, range.last_excluded.value_or(*all));
     add_until(end);
   } else {
     // Undecodable frames are planned too; their rows report the error.

@@ -18,8 +18,16 @@ struct CalibrateOptions {
   std::string folder;
   std::string board;
   double square_m = 0;
+  std::string layout;  // of files with both images
   std::string output = "calib.yaml";
 };
+
+std::vector<io::FrameFiles> pairs_of(const CalibrateOptions& options) {
+  if (!options.layout.empty()) return io::find_both(options.folder, io::layout_of(options.layout));
+  std::vector<io::FrameFiles> pairs = io::find_pairs(options.folder);
+  for (const io::FrameFiles& files : pairs) (void)right_of(files);
+  return pairs;
+}
 
 /// "9x6"
 io::Board board_of(const CalibrateOptions& options) {
@@ -73,7 +81,7 @@ Detections look_at(const std::vector<io::FrameFiles>& pairs, const io::Board& bo
                 << " pairs; still looking (a board of 10x7 squares has 9x6 inner corners)\n";
     }
     progress.at(i, pairs[i].name);
-    const io::LoadedPair images = io::load_pair(pairs[i].left, right_of(pairs[i]));
+    const io::LoadedPair images = io::load_pair(pairs[i]);
     Detections& group = of_size(groups, images.left.gray.size());
     auto left = io::find_board(images.left.gray, board);
     auto right = io::find_board(images.right.gray, board);
@@ -125,7 +133,7 @@ std::string judge_side(const std::string& text) {
 int calibrate(const CalibrateOptions& options) {
   const io::Board board = board_of(options);
   std::vector<std::string> of_other_size;
-  const Detections sightings = look_at(io::find_pairs(options.folder), board, of_other_size);
+  const Detections sightings = look_at(pairs_of(options), board, of_other_size);
   if (sightings.list.size() < io::kMinSightings) throw Error(too_few(sightings, options));
   const io::StereoCalibration found = io::calibrate_stereo(sightings.list, board, sightings.size);
   const StereoRig rig = io::Rectifier(found.raw).rig();
@@ -163,6 +171,7 @@ Work declare_calibrate(CLI::App& app) {
                  "folder per pair")
       ->required()
       ->type_name("");
+  add_layout_option(app, options->layout);
   app.add_option("--board", options->board, "inner corners of the board, columns x rows, e.g. 9x6")
       ->required()
       ->type_name("CxR");

@@ -109,6 +109,11 @@ Exec make_exec(const ExecOptions& options) {
   return exec;
 }
 
+void add_layout_option(CLI::App& app, std::string& layout) {
+  app.add_option("--layout", layout, "side_by_side or top_bottom: each image file holds both images")
+      ->type_name("NAME");
+}
+
 void add_input_options(CLI::App& app, InputOptions& options) {
   app.add_option("LEFT", options.left,
                  "left image of a rectified pair, or a folder with left.png and right.png")
@@ -121,6 +126,7 @@ void add_input_options(CLI::App& app, InputOptions& options) {
       ->type_name("FILE");
   app.add_flag("--scale-calibration", options.scale_calibration,
                "scale a calibration for images of another size of the same shape");
+  add_layout_option(app, options.layout);
   add_config_options(app, options.config);
 }
 
@@ -185,6 +191,26 @@ void check_rights(const std::vector<io::FrameFiles>& frames) {
     (void)right_of(frames.front());
 }
 
+/// The frames of files that hold both images.
+std::vector<io::FrameFiles> frames_with_both(const InputOptions& options) {
+  const io::Layout layout = io::layout_of(options.layout);
+  if (!options.right.empty()) {
+    throw Error("--layout " + options.layout + ": found the right image " + options.right + ", expected " +
+                options.left + " only, with both images");
+  }
+  std::vector<io::FrameFiles> frames;
+  std::error_code ignored;
+  if (fs::is_directory(options.left, ignored)) {
+    frames = io::find_both(options.left, layout);
+  } else {
+    frames.push_back(frame_of_files(options));
+    frames.back().right = frames.back().left;
+    frames.back().layout = layout;
+  }
+  if (!options.disparity.empty()) check_maps(frames, options);
+  return frames;
+}
+
 /// Recognises MCAP by its first bytes, since the reader may not be built in.
 bool is_recording(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -197,6 +223,7 @@ bool is_recording(const fs::path& path) {
 std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
   if (options.left.empty()) throw Error("LEFT: found an empty name, expected a file or a folder");
   std::error_code ignored;
+  if (!options.layout.empty()) return frames_with_both(options);
   if (options.right.empty() && fs::is_directory(options.left, ignored)) {
     std::vector<fs::path> alone;
     auto frames = io::find_frames(options.left, options.cameras, &alone);
@@ -265,12 +292,14 @@ DisparityMap load_given(const fs::path& path, Size size, const fs::path& left, c
 LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec) {
   LoadedFrame frame;
   if (!options.disparity.empty()) {
-    frame.left = io::load_picture(files.left, exec.pool);
+    frame.left = files.layout == io::Layout::one ? io::load_picture(files.left, exec.pool)
+                                                 : io::load_pair(files, exec.pool).left;
     const std::optional<fs::path> map = map_of(files, options.disparity);
     if (!map) refuse_without_map(files, options.disparity);
     frame.given = load_given(*map, frame.left.gray.size(), files.left, exec);
   } else {
-    io::LoadedPair pair = io::load_pair(files.left, right_of(files), exec.pool);
+    (void)right_of(files);
+    io::LoadedPair pair = io::load_pair(files, exec.pool);
     frame.left = std::move(pair.left);
     frame.right = std::move(pair.right.gray);
   }

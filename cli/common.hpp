@@ -58,12 +58,14 @@ struct InputOptions {
   std::string right;  // empty with a folder, or with a given disparity
   std::string calib;
   bool scale_calibration = false;
+  std::string layout;  // of files with both images; empty: each has one
   std::string disparity;
   ConfigOptions config;
   io::Cameras cameras = io::Cameras::rectified;  // the kind of images searched for
 };
 
-/// LEFT, RIGHT, --calib and those of add_config_options().
+void add_layout_option(CLI::App& app, std::string& layout);
+/// LEFT, RIGHT, --calib, --layout and those of add_config_options().
 void add_input_options(CLI::App& app, InputOptions& options);
 
 // ---- frames ----

@@ -53,7 +53,7 @@ std::optional<io::LoadedPair> load_or_find(const io::FrameFiles& files, Examined
                                            const Exec& exec) {
   const fs::path& right_file = right_of(files);
   try {
-    io::LoadedPair images = io::load_pair(files.left, right_file, exec.pool);
+    io::LoadedPair images = io::load_pair(files, exec.pool);
     examined.size = images.left.gray.size();
     return images;
   } catch (const Error&) {
@@ -177,7 +177,8 @@ std::optional<Finding> find_sizes(const std::vector<ExaminedPair>& pairs) {
 /// nullopt if it is unusable, which ends the consecutive pairs.
 std::optional<io::LoadedPair> load_if_possible(const io::FrameFiles& files, const Exec& exec) {
   try {
-    return io::load_pair(files.left, right_of(files), exec.pool);
+    (void)right_of(files);
+    return io::load_pair(files, exec.pool);
   } catch (const Error&) {
     return std::nullopt;
   }

@@ -9,6 +9,7 @@
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/sequence/first_pose.hpp>
 #include <cairn/sequence/odometry.hpp>
+#include <cairn/sequence/stamps.hpp>
 #include <iostream>
 #include <map>
 
@@ -84,6 +85,7 @@ class CameraMotion {
     StereoResult scene = estimate_disparity(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb),
                                             rig_, config.segmentation, exec);
     const auto start = live::Clock::now();
+    if (before_ && clock_step(*before_, frame.stamp) == ClockStep::set_back) before_.reset();
     if (!before_) {
       const Pose first = first_pose(scene.ground, rig_);
       from_level_ = camera_from_level(first);
@@ -92,7 +94,7 @@ class CameraMotion {
     std::optional<MotionPrior> prior;
     if (priors_ != nullptr && before_) prior = priors_->between(*before_, frame.stamp, from_level_);
     if (prior) ++run_.with_prior;
-    if (frame.after_gap) state_ = after_gap(std::move(state_));
+    if (before_ && frame.after_gap) state_ = after_gap(std::move(state_));
     OdometryStep moved = advance_odometry(state_, {frame.left.gray, scene.disparity, scene.confidence, {}},
                                           rig_, prior, config.odometry);
     run_.milliseconds.push_back(live::ms_between(start, live::Clock::now()));

@@ -45,10 +45,15 @@ void save_stamps(const fs::path& path, const std::vector<std::optional<std::int6
   io::write_file(path, text);
 }
 
+io::LoadedPair raw_pair(const io::FrameFiles& files) {
+  (void)right_of(files);
+  return io::load_pair(files);
+}
+
 int rectify(const RectifyOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   const io::Rectifier rectify_pair(io::load_raw_calibration(
-      options.input.calib, [&] { return io::load_picture(frames.front().left).gray.size(); }));
+      options.input.calib, [&] { return raw_pair(frames.front()).left.gray.size(); }));
   const auto folder_of = [&](const io::FrameFiles& files) {
     return frames.size() == 1 ? fs::path(options.output) : options.output / fs::path(files.name);
   };
@@ -59,7 +64,7 @@ int rectify(const RectifyOptions& options) {
   const Progress progress(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
-    const io::LoadedPair raw = io::load_pair(frames[i].left, right_of(frames[i]));
+    const io::LoadedPair raw = raw_pair(frames[i]);
     io::LoadedPair rectified;
     try {
       rectified = rectify_pair(raw);
@@ -91,6 +96,7 @@ Work declare_rectify(CLI::App& app) {
       ->required()
       ->type_name("");
   app.add_option("RIGHT", options->input.right, "right image; not with a folder")->type_name("");
+  add_layout_option(app, options->input.layout);
   app.add_option("--calib", options->input.calib,
                  "output of cairn calibrate; or OpenCV YAML or XML with M1 D1 M2 D2 R T, ROS camera_info, "
                  "EuRoC's cam0/sensor.yaml, or Kalibr's camchain")

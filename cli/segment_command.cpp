@@ -186,7 +186,8 @@ class GivenCheck {
     const int index = frames_++;
     if (!was_refused_ && index >= RigWatch::kFrames && index % RigWatch::kEvery != 0) return std::nullopt;
     was_refused_ = false;
-    const io::LoadedImage right = io::load_picture(*files.right, exec.pool);
+    const io::LoadedImage right = files.layout == io::Layout::one ? io::load_picture(*files.right, exec.pool)
+                                                                  : io::load_pair(files, exec.pool).right;
     auto found = check_given_disparity(loaded.given->disparity_px,
                                        StereoPair::from(loaded.left.gray, right.gray), loaded.rig, exec);
     was_refused_ = found && found->severity == Severity::broken;

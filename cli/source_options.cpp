@@ -51,7 +51,7 @@ void add_source_options(CLI::App& app, SourceInput& input) {
   app.add_flag("--scale-calibration", input.options.scale_calibration,
                "scaling of a calibration for images of another size of the same shape");
   app.add_option("--layout", input.options.layout,
-                 "layout of a single video or camera: side_by_side or top_bottom")
+                 "layout of a video, a camera or images with both images: side_by_side or top_bottom")
       ->type_name("NAME");
   app.add_option("--topics", input.options.topics,
                  "image topics of a recording (MCAP) with several stereo pairs")

@@ -28,20 +28,6 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, unknown);
 }
 
-/// The images of a folder in order.
-std::vector<fs::path> images_in(const fs::path& folder) {
-  std::vector<fs::path> images;
-  std::error_code reason;
-  for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
-    if (io::is_picture(it->path())) images.push_back(it->path());
-  }
-  if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
-  std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
-    return io::in_natural_order(a.filename().string(), b.filename().string());
-  });
-  return images;
-}
-
 // ---- one side with its stamps ----
 
 struct Side {
@@ -78,7 +64,7 @@ std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>
 }
 
 Side side_in(const fs::path& folder) {
-  Side side{images_in(folder), {}, {}};
+  Side side{io::images_in(folder), {}, {}};
   if (side.files.empty()) throw Error(folder.string() + ": contains no images (.png .jpg .pgm .ppm)");
   const std::vector<std::string> names = stems_of(side.files);
   if (const auto path =
@@ -129,8 +115,8 @@ FrameList paired(const Side& left, const Side& right, const StampPairs& pairs, c
 }
 
 FrameList paired_by_stamps(const Side& left, const Side& right, const SourceOptions& options) {
-  check_rising(*left.stamps, stems_of(left.files), left.stamps_from);
-  check_rising(*right.stamps, stems_of(right.files), right.stamps_from);
+  check_unit(*left.stamps, left.stamps_from);
+  check_unit(*right.stamps, right.stamps_from);
   FrameList list =
       paired(left, right, pair_by_stamps(*left.stamps, *right.stamps, options.max_skew_ms), options);
   if (!list.frames.empty()) return list;
@@ -158,7 +144,7 @@ StampPairs pair_by_keys(const std::vector<Key>& left, const std::vector<Key>& ri
   return found;
 }
 
-/// Common to all kinds: the range, and checking the order of stamps.
+/// Common to all kinds: the range, and checking the unit of stamps.
 FrameList finished(FrameList list, const SourceOptions& options, const std::string& source) {
   const std::size_t all = list.frames.size();
   std::erase_if(list.frames, [&](const ListedFrame& frame) { return !options.frames.contains(frame.index); });
@@ -167,12 +153,8 @@ FrameList finished(FrameList list, const SourceOptions& options, const std::stri
                 ", and none of them is in --frames");
   }
   std::vector<Stamp> stamps;
-  std::vector<std::string> names;
-  for (const ListedFrame& frame : list.frames) {
-    stamps.push_back(frame.stamp);
-    names.push_back(frame.name);
-  }
-  check_rising(stamps, names, list.stamps_from);
+  for (const ListedFrame& frame : list.frames) stamps.push_back(frame.stamp);
+  check_unit(stamps, list.stamps_from);
   return list;
 }
 
@@ -227,7 +209,7 @@ NumberedFiles files_of(const std::string& text) {
   if (!pattern) throw Error(text + ": expected one %d, %04d or the like in the file name");
   if (!io::is_folder(pattern->folder)) throw Error(pattern->folder.string() + ": no such folder");
   NumberedFiles found;
-  for (const fs::path& file : images_in(pattern->folder)) {
+  for (const fs::path& file : io::images_in(pattern->folder)) {
     const std::string name = file.filename().string();
     const std::size_t around = pattern->before.size() + pattern->after.size();
     if (name.size() < around + pattern->digits || !name.starts_with(pattern->before) ||
@@ -325,7 +307,7 @@ FrameList list_two_subfolders(const fs::path& source, const std::vector<io::Fram
   const fs::path left_folder = frames.front().left.parent_path();
   const fs::path right_folder = frames.front().expected_right.parent_path();
   const Side left = left_side(source, left_folder);
-  const Side right = io::is_folder(right_folder) ? Side{images_in(right_folder), {}, {}} : Side{};
+  const Side right = io::is_folder(right_folder) ? Side{io::images_in(right_folder), {}, {}} : Side{};
   const StampPairs pairs = pair_by_keys(stems_of(left.files), stems_of(right.files));
   if (pairs.pairs.empty()) {
     throw Error(left_folder.string() + ": no image has a right one, expected " +
@@ -362,7 +344,7 @@ FrameList list_frames(const fs::path& source, const std::vector<io::FrameFiles>&
       continue;
     }
     list.frames.push_back({frames[i].name, i, frames[i].left, *frames[i].right, frames[i].calib,
-                           stamps ? stamps->all[i] : stamp_at(i, rate)});
+                           stamps ? stamps->all[i] : stamp_at(i, rate), frames[i].layout});
   }
   return list;
 }
@@ -379,9 +361,11 @@ std::string skew_text(Stamp left, Stamp right, double max_skew_ms) {
 }
 
 FrameList list_folder(const fs::path& folder, const SourceOptions& options) {
-  if (const std::optional<fs::path> camera = euroc_camera_in(folder))
-    return finished(list_euroc(*camera, options), options, folder.string());
-  std::vector<io::FrameFiles> frames = io::find_frames(folder);
+  const bool holds_both = !options.layout.empty();
+  const std::optional<fs::path> camera = holds_both ? std::nullopt : euroc_camera_in(folder);
+  if (camera) return finished(list_euroc(*camera, options), options, folder.string());
+  std::vector<io::FrameFiles> frames =
+      holds_both ? io::find_both(folder, io::layout_of(options.layout)) : io::find_frames(folder);
   sort_by_name(frames);
   const io::FrameFiles& first = frames.front();
   const bool in_two_folders = is_in_two_folders(first);
@@ -400,10 +384,10 @@ std::map<fs::path, Stamp> stamps_in(const fs::path& folder, std::vector<io::Fram
   if (is_in_two_folders(frames.front())) {
     const Side left = left_side(folder, frames.front().left.parent_path());
     if (!left.stamps) return by_image;
-    check_rising(*left.stamps, stems_of(left.files), left.stamps_from);
+    check_unit(*left.stamps, left.stamps_from);
     for (std::size_t i = 0; i < left.files.size(); ++i) by_image[left.files[i]] = (*left.stamps)[i];
   } else if (const std::optional<Stamps> stamps = stamps_of(folder, names_of(frames))) {
-    check_rising(stamps->all, names_of(frames), stamps->from);
+    check_unit(stamps->all, stamps->from);
     for (std::size_t i = 0; i < frames.size(); ++i) by_image[frames[i].left] = stamps->all[i];
   }
   return by_image;

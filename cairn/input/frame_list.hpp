@@ -21,10 +21,11 @@ struct ListedFrame {
   std::filesystem::path right;
   std::optional<std::filesystem::path> calib;  // of this frame
   Stamp stamp;
+  io::Layout layout = io::Layout::one;  // otherwise left and right are one file with both images
 };
 
 struct FrameList {
-  std::vector<ListedFrame> frames;             // stamps ascend
+  std::vector<ListedFrame> frames;             // in order; where the stamps do not ascend, see clock_step()
   std::optional<std::filesystem::path> calib;  // of all frames
   bool grey_cameras = false;                   // KITTI's cameras 0 and 1
   bool is_raw = false;                         // the images need rectification
@@ -42,7 +43,7 @@ FrameList list_two(const std::string& left, const std::string& right, const Sour
 
 /// The stamps of the frames of a folder, by the path of the left image: from files as for list_folder(), or
 /// from the frames' names; empty if there are none. Throws Error if a file of stamps does not fit the frames,
-/// or as check_rising().
+/// or as check_unit().
 std::map<std::filesystem::path, Stamp> stamps_in(const std::filesystem::path& folder,
                                                  std::vector<io::FrameFiles> frames);
 

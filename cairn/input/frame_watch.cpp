@@ -80,6 +80,25 @@ SourceCalibration open_calibration(const SourceOptions& options, const std::opti
   return calibration;
 }
 
+bool FrameWatch::continues(Stamp stamp, const std::string& name, std::vector<SourceRemark>& remarks) const {
+  if (!before_) return true;
+  switch (clock_step(before_->stamp, stamp)) {
+    case ClockStep::forward:
+      break;
+    case ClockStep::repeated:
+      remark(remarks,
+             {"frame with a stamp that is not later than the one before", 1,
+              name + " (" + stamp_text(stamp) + " after " + stamp_text(before_->stamp) + ")", true, false});
+      return false;
+    case ClockStep::set_back:
+      remark(remarks,
+             {"clock set back, a new run begins", 1,
+              name + " (" + stamp_text(stamp) + " after " + stamp_text(before_->stamp) + ")", false, false});
+      break;
+  }
+  return true;
+}
+
 void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks) {
   const Size size = frame.left.gray.size();
   PreviousFrame now{frame.stamp, frame.name, hash_of(frame.left.gray.view()), hash_of(frame.right.view())};
@@ -88,11 +107,6 @@ void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<
   } else {
     if (size != size_)
       throw Error(file + ": is " + text(size) + ", expected " + text(size_) + " like the frames before");
-    if (now.stamp <= before_->stamp) {
-      throw Error(file + ": frame " + now.name + " has the stamp " + stamp_text(now.stamp) +
-                  ", expected one later than the " + stamp_text(before_->stamp) + " of frame " +
-                  before_->name);
-    }
     frame.after_gap = seconds_between(before_->stamp, now.stamp) > max_gap_s_;
     const bool left_stands = now.left == before_->left;
     const bool right_stands = now.right == before_->right;

@@ -49,9 +49,12 @@ class FrameWatch {
  public:
   explicit FrameWatch(double max_gap_s) : max_gap_s_(max_gap_s) {}
 
+  /// Whether a frame with this stamp continues the sequence, by clock_step(): a remark counts those left out, and
+  /// another one where the clock was set back. Call it before see().
+  [[nodiscard]] bool continues(Stamp stamp, const std::string& name,
+                               std::vector<SourceRemark>& remarks) const;
   /// Sets after_gap, and adds a remark on a camera that repeats its image while the other does not. Throws
-  /// Error if the size differs from the first frame or the stamp is not later than the one before. `file`:
-  /// for messages.
+  /// Error if the size differs from the first frame. `file`: for messages.
   void see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks);
   [[nodiscard]] Size image_size() const { return size_; }
 

@@ -274,6 +274,7 @@ class McapSequence : public SourceSequence {
         continue;
       }
       const Stamp stamp = options_.rate_hz > 0 ? stamp_at(index, options_.rate_hz) : both.left.stamp;
+      if (!watch_.continues(stamp, name, remarks_)) continue;
       SequenceFrame frame{name, index, stamp, {}, {}, false};
       frame.frame_id = left.frame_id;
       try {

@@ -22,6 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+io::LoadedPair load_images(const ListedFrame& files, const Pool& pool = {}, int least_bits = 8) {
+  if (files.layout != io::Layout::one) return io::load_both(files.left, files.layout, pool, least_bits);
+  return io::load_pair(files.left, files.right, pool, least_bits);
+}
+
 /// Whether each of the images can be read by itself.
 bool are_readable(const ListedFrame& files) {
   try {
@@ -52,7 +57,7 @@ class FileSequence : public SourceSequence {
     const std::optional<fs::path> found = first.calib ? first.calib : list_.calib;
     each_has_own_ = options.calib.empty() && first.calib && !list_.is_raw && !options.rectify;
     calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw,
-                                    [&] { return io::load_picture(first.left).gray.size(); });
+                                    [&] { return load_images(first).left.gray.size(); });
     if (each_has_own_) calib_bytes_ = io::read_file(calibration_.path, io::kMaxTextBytes);
     first_ = load(first);
     calibration_.suit(first_->left.gray.size());
@@ -67,6 +72,7 @@ class FileSequence : public SourceSequence {
   std::optional<SequenceFrame> advance() override {
     while (at_ < list_.frames.size()) {
       const ListedFrame& files = list_.frames[at_++];
+      if (!watch_.continues(files.stamp, files.name, remarks_)) continue;
       try {
         return load(files);
       } catch (const Error& error) {
@@ -81,7 +87,7 @@ class FileSequence : public SourceSequence {
 
   SequenceFrame load(const ListedFrame& files) {
     if (each_has_own_) check_calibration(files);
-    io::LoadedPair pair = io::load_pair(files.left, files.right, pool_, bits_);
+    io::LoadedPair pair = load_images(files, pool_, bits_);
     // Raw images are compared by their own size.
     if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
       throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +
@@ -134,8 +140,7 @@ void check(const SourceOptions& options) {
   if (!(options.max_skew_ms >= 0)) refuse("--max-skew", options.max_skew_ms, "ms, not negative");
   if (!(options.open_timeout_s > 0 && options.open_timeout_s <= 1e6))
     refuse("--open-timeout", options.open_timeout_s, "s, above 0 ... 1e6");
-  if (!options.layout.empty() && options.layout != "side_by_side" && options.layout != "top_bottom")
-    throw Error("--layout: found " + options.layout + ", expected side_by_side or top_bottom");
+  (void)io::layout_of(options.layout);
 }
 
 /// The MCAP file that the source is, or that the folder contains.
@@ -151,7 +156,8 @@ void check_no_topics(const SourceOptions& options, const std::string& source) {
 
 void check_no_layout(const SourceOptions& options, const std::string& source) {
   if (!options.layout.empty())
-    throw Error("--layout " + options.layout + ": is for one video with both images, " + source + " is none");
+    throw Error("--layout " + options.layout + ": is for images or one video with both images, " + source +
+                " is none");
 }
 
 std::unique_ptr<Sequence> open_pair(const std::string& left, const std::string& right,
@@ -260,7 +266,6 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
     }
     return open_video(source, options, pool);
   }
-  check_no_layout(options, source);
   const fs::path folder = (fs::path(source) / "").parent_path();  // without a trailing slash
   return std::make_unique<FileSequence>(name_of(folder), list_folder(folder, options), options, pool);
 }

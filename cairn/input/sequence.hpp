@@ -25,7 +25,7 @@ namespace cairn::input {
 struct SequenceFrame {
   std::string name;       // of the folder, of the left file without extension, or the number in a video
   std::size_t index = 0;  // in the source, from 0; --frames counts these
-  Stamp stamp;            // later than the one before
+  Stamp stamp;            // later than the one before, unless the clock was set back, see clock_step()
   io::LoadedImage left;
   Image<Gray> right;
   bool after_gap = false;  // more than SourceOptions::max_gap_s after the frame before
@@ -69,7 +69,7 @@ FrameRange parse_frame_range(std::string_view text);
 /// The options of reading a source.
 struct SourceOptions {
   std::string calib;   // overrides the calibration of the source
-  std::string layout;  // of one video: side_by_side or top_bottom
+  std::string layout;  // of one video, camera or folder with both images in one: side_by_side or top_bottom
   double rate_hz = 0;  // replaces missing stamps and those of a video; 0 = from the source, else 10
   FrameRange frames;
   double max_gap_s = 1.0;
@@ -100,8 +100,8 @@ class Sequence {
   Sequence& operator=(const Sequence&) = delete;
 
   /// The next pair; nullopt after the last. Throws Error naming the file or frame if its size or calibration
-  /// differs from the first frame, or its stamp is not later than the one before. A frame that cannot be
-  /// decoded is skipped with a remark.
+  /// differs from the first frame. A frame that cannot be decoded, or that is not later than the one before, is
+  /// skipped with a remark.
   virtual std::optional<SequenceFrame> next() = 0;
   /// The largest number of frames that next() delivers; an estimate for a video, or unknown.
   [[nodiscard]] virtual std::optional<std::size_t> size() const = 0;
@@ -131,6 +131,7 @@ class Sequence {
 
 /// Opens a source, recognised by its content or name:
 /// - a folder of frames (docs/formats.md), of KITTI odometry or raw recordings, of EuRoC or TUM-VI;
+/// - a folder of images with both images each, with options.layout;
 /// - "DIR_L,DIR_R", two folders of images, paired in order or by stamps; "left_%04d.png,right_%04d.png", two
 ///   patterns;
 /// - a video with options.layout, or "l.mp4,r.mp4"; a recording (MCAP);

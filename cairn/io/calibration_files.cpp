@@ -319,7 +319,9 @@ Statement from_projections(const Projection& left, const Projection& right) {
   // cx.
   says.baseline_m = (left[3] - right[3]) / left[0];
   if (std::abs(left[7] - right[7]) > std::abs(left[3] - right[3])) {
-    throw Error("is of two cameras one above the other, expected side by side");
+    throw Error(
+        "is of two cameras one above the other, expected side by side: rotate their images "
+        "(docs/use_your_own_camera.md)");
   }
   return says;
 }

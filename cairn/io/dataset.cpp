@@ -279,6 +279,35 @@ bool is_picture(const fs::path& path) {
              kPictureExtensions.end();
 }
 
+LoadedPair load_pair(const FrameFiles& files, const Pool& pool, int least_bits) {
+  if (files.layout != Layout::one) return load_both(files.left, files.layout, pool, least_bits);
+  return load_pair(files.left, files.right.value(), pool, least_bits);
+}
+
+std::vector<fs::path> images_in(const fs::path& folder) {
+  std::vector<fs::path> images;
+  std::error_code reason;
+  for (fs::directory_iterator it(folder, reason), end; !reason && it != end; it.increment(reason)) {
+    if (is_picture(it->path())) images.push_back(it->path());
+  }
+  if (reason) throw Error(folder.string() + ": cannot be listed: " + reason.message());
+  std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
+    return in_natural_order(a.filename().string(), b.filename().string());
+  });
+  return images;
+}
+
+std::vector<FrameFiles> find_both(const fs::path& folder, Layout layout) {
+  std::vector<FrameFiles> frames;
+  const std::optional<fs::path> calib = calibration_in(folder);
+  for (const fs::path& file : images_in(folder))
+    frames.push_back({file.stem().string(), folder, file, file, calib, {}, false, layout});
+  if (frames.empty())
+    throw Error(folder.string() +
+                ": contains no images, expected some with both images of a pair (--layout)");
+  return frames;
+}
+
 std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras, std::vector<fs::path>* alone) {
   check_folder(folder);
   std::vector<fs::path> ignored;

@@ -20,7 +20,10 @@ struct FrameFiles {
   std::optional<std::filesystem::path> calib;  // of the frame, else of ../gt/
   std::filesystem::path expected_right{};      // for messages; empty if no layout determines it
   bool grey_cameras = false;                   // KITTI cameras 0 and 1, with their own projections
+  Layout layout = Layout::one;                 // otherwise left and right are one file with both images
 };
+/// The images of a frame with a right one. Throws Error.
+LoadedPair load_pair(const FrameFiles& files, const Pool& pool = {}, int least_bits = 8);
 
 enum class Cameras : std::uint8_t { rectified, raw };
 
@@ -35,6 +38,11 @@ bool is_picture(const std::filesystem::path& path);
 /// left images that have no right one, among pairs of files. Throws Error if there is no frame.
 std::vector<FrameFiles> find_frames(const std::filesystem::path& folder, Cameras cameras = Cameras::rectified,
                                     std::vector<std::filesystem::path>* alone = nullptr);
+
+/// The images of a folder, by their extensions, in the order of the numbers in their names. Throws Error.
+std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder);
+/// The frames of a folder in which every image holds both images. Throws Error if there is none.
+std::vector<FrameFiles> find_both(const std::filesystem::path& folder, Layout layout);
 
 /// The pairs for a calibration: if two or more pairs differ only in their names, all of them, even if one is
 /// left.png. Throws Error if there is none.

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 /// Reading and writing of images. Read: PNG, JPEG, PGM/PPM (P2, P3, P5, P6); 8 or 16 bits; grey or
 /// colour; by content, not by extension. Every function throws Error with one line that names the file:
@@ -38,6 +39,21 @@ LoadedImage load_picture(const std::filesystem::path& path, const Pool& pool = {
 /// of a sequence have one scale. Also throws Error if sizes differ, or only one has 8 bits.
 LoadedPair load_pair(const std::filesystem::path& left, const std::filesystem::path& right,
                      const Pool& pool = {}, int least_bits = 8);
+
+/// The arrangement of the two images of a pair in one image.
+enum class Layout : std::uint8_t {
+  one,           // there is only one
+  side_by_side,  // left and right half
+  top_bottom,
+};
+/// Throws Error for other names. Empty: side_by_side.
+Layout layout_of(std::string_view name);
+/// The size of each of the two. Throws Error (without a file name) if the side to be halved is odd.
+Size half_of(Size both, Layout layout);
+
+/// Reads a file that holds both images; they are reduced as by load_pair(). Throws Error also if it cannot be halved.
+LoadedPair load_both(const std::filesystem::path& path, Layout layout, const Pool& pool = {},
+                     int least_bits = 8);
 
 /// The grey of colours, (77 R + 150 G + 29 B + 128) >> 8.
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool = {});

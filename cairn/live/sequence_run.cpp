@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/sequence/first_pose.hpp>
+#include <cairn/sequence/stamps.hpp>
 #include <cstdlib>
 #include <iterator>
 #include <utility>
@@ -69,9 +70,22 @@ SequenceRun::SequenceRun(const input::Sequence& source, std::string source_name,
   }
 }
 
+void SequenceRun::begin_run(Stamp began, LandmarkMap landmarks, std::int64_t number,
+                            const std::optional<Pose>& start) {
+  if (map_ && !is_map_read_only_) number = map_->begin_run(input::without_password(source_name_), began);
+  marked_.state = begin_landmarks(std::move(landmarks), number, start);
+}
+
 TrackedFrame SequenceRun::next(const input::SequenceFrame& frame) {
   std::optional<MotionPrior> prior;
-  if (priors_ && has_begun_) prior = priors_->between(before_, frame.stamp, camera_from_level(pose_before_));
+  // Like the follower: stamps are comparable, and unique in the map, within a run only.
+  const bool is_set_back = has_begun_ && clock_step(before_, frame.stamp) == ClockStep::set_back;
+  if (is_set_back && source_.rig()) {
+    if (map_ && !is_map_read_only_) map_->end_run(RunState::done, marked_.state.map);
+    begin_run(frame.stamp, std::move(marked_.state.map), marked_.state.run + 1, std::nullopt);
+  }
+  if (priors_ && has_begun_ && !is_set_back)
+    prior = priors_->between(before_, frame.stamp, camera_from_level(pose_before_));
   if (frame.after_gap) follower_.forget();
   TrackedFrame step =
       follower_.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp, prior,
@@ -85,10 +99,7 @@ TrackedFrame SequenceRun::next(const input::SequenceFrame& frame) {
 
 void SequenceRun::mark(const TrackedFrame& step, const input::SequenceFrame& frame) {
   const bool writes = map_ && !is_map_read_only_;
-  if (!has_begun_) {
-    const std::int64_t run = writes ? map_->begin_run(input::without_password(source_name_), step.stamp) : 0;
-    marked_.state = begin_landmarks(map_ ? map_->load() : LandmarkMap{}, run, start_);
-  }
+  if (!has_begun_) begin_run(step.stamp, map_ ? map_->load() : LandmarkMap{}, 0, start_);
   const LandmarkFrame seen = landmark_frame(step, *source_.rig(), frame.left.gray, frame.left.rgb);
   marked_ = advance_landmarks(std::move(marked_.state), seen, config().landmarks);
   if (writes) map_->write(seen, marked_);

@@ -59,6 +59,8 @@ class SequenceRun {
 
  private:
   void mark(const TrackedFrame& step, const input::SequenceFrame& frame);
+  /// Begins a run on these landmarks; `number` is its own without a writable map.
+  void begin_run(Stamp began, LandmarkMap landmarks, std::int64_t number, const std::optional<Pose>& start);
 
   const input::Sequence& source_;
   std::string source_name_;

@@ -8,6 +8,7 @@
 
 #include <cairn/sequence/controller.hpp>
 #include <cairn/sequence/first_pose.hpp>
+#include <cairn/sequence/stamps.hpp>
 
 namespace cairn {
 namespace {
@@ -98,6 +99,15 @@ void Follower::forget() {
   if (controller_) controller_->forget();
 }
 
+void Follower::start_again() {
+  State fresh;
+  fresh.size = state_.size;
+  fresh.frames = state_.frames;
+  fresh.tracks.next = state_.tracks.next;
+  state_ = std::move(fresh);
+  if (controller_) controller_->forget();
+}
+
 TrackedFrame Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
                             const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
   TrackedFrame step = follow(pair, stamp, prior, map_from_camera, scan);
@@ -117,9 +127,9 @@ void Follower::check(const StereoPair& pair, Stamp stamp) const {
   };
   if (state_.size && *state_.size != pair.size())
     refuse("is " + text(pair.size()) + ", the first one is " + text(*state_.size));
-  if (state_.frames > 0 && stamp <= state_.before) {
+  if (state_.before && clock_step(*state_.before, stamp) == ClockStep::repeated) {
     refuse("its stamp " + std::to_string(stamp.ns) + " ns is not later than the one before, " +
-           std::to_string(state_.before.ns) + " ns");
+           std::to_string(state_.before->ns) + " ns");
   }
 }
 
@@ -127,7 +137,7 @@ Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoRe
                              const std::optional<MotionPrior>& prior,
                              const std::optional<Pose>& map_from_camera) {
   OdometryState& odometry = state_.odometry;
-  if (state_.frames == 0) {
+  if (!state_.before) {
     odometry = begin_odometry(map_from_camera.value_or(first_pose(seen.ground, rig_)));
     state_.is_over_floor = !map_from_camera && seen.ground.plane.has_value();
   }
@@ -180,6 +190,7 @@ void Follower::match_tracks(TrackedFrame& step, const StereoPair& pair, const Ma
 TrackedFrame Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
                               const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
   check(pair, stamp);
+  if (state_.before && clock_step(*state_.before, stamp) == ClockStep::set_back) start_again();
   TrackedFrame step;
   step.index = state_.frames;
   step.stamp = stamp;

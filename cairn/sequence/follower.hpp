@@ -42,8 +42,9 @@ class Follower {
   Follower(Follower&& from) noexcept;
   Follower& operator=(Follower&& from) noexcept;
 
-  /// The next frame. Throws Error if its size differs from the first one's, its stamp is not later than the
-  /// one before, or the configuration does not suit its size. `prior`: the motion since the frame before.
+  /// The next frame. Throws Error if its size differs from the first one's, its stamp is the one before or at most 1 s
+  /// earlier, or the configuration does not suit its size. A stamp set back further, see clock_step(), begins a new run:
+  /// another map frame, and new tracks, whose ids continue. `prior`: the motion since the frame before.
   /// `map_from_camera`: the pose of the camera if the robot knows it; used unchanged, without motion
   /// estimation. `scan`: of a laser at this time.
   TrackedFrame next(const StereoPair& pair, Stamp stamp,
@@ -73,6 +74,8 @@ class Follower {
   TrackedFrame follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
                       const std::optional<Pose>& map_from_camera, const LaserScan* scan);
   void begin_control();
+  /// After the clock was set back.
+  void start_again();
   /// Throws Error unless the frame continues the sequence.
   void check(const StereoPair& pair, Stamp stamp) const;
 
@@ -83,8 +86,8 @@ class Follower {
   struct State {
     std::optional<Size> size;
     int frames = 0;
-    bool is_over_floor = false;  // the map's z = 0 is the floor
-    Stamp before;
+    bool is_over_floor = false;   // the map's z = 0 is the floor
+    std::optional<Stamp> before;  // nullopt at the beginning of a run
     OdometryState odometry;
     Tracks tracks;
     MaskMemory remembered;

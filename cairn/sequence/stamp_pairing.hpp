@@ -10,12 +10,12 @@
 #include <optional>
 #include <utility>
 
-#include <cairn/sequence/pose.hpp>
+#include <cairn/sequence/stamps.hpp>
 
 namespace cairn {
 
-/// Pairs the images of two ordered streams: mutual nearest neighbours in time, at most `max_skew_ms` apart.
-/// Sides: 0 is left, 1 is right.
+/// Pairs the images of two ordered streams: mutual nearest neighbours in time, at most `max_skew_ms` apart. Where the
+/// clock is set back, images that wait from before it remain without a partner. Sides: 0 is left, 1 is right.
 template <class T>
 class StampPairing {
  public:
@@ -31,12 +31,20 @@ class StampPairing {
   StampPairing(double max_skew_ms, std::function<void(std::size_t side, WaitingItem&&)> alone)
       : max_skew_ns_(max_skew_ms * 1e6), alone_(std::move(alone)) {}
 
-  void push(std::size_t side, Stamp stamp, T value) { waiting_[side].push_back({stamp, std::move(value)}); }
-  /// For live streams: keeps at most `most` waiting; a stamp not later than the previous one of its side
-  /// restarts both sides, since the clock was set back.
-  void push_live(std::size_t side, Stamp stamp, T value, std::size_t most) {
-    if (last_[side] && stamp <= *last_[side]) leave_all();
+  void push(std::size_t side, Stamp stamp, T value) {
+    if (last_[side] && clock_step(*last_[side], stamp) == ClockStep::set_back) {
+      while (!waiting_[side].empty()) leave(side);
+      // The other side may have been set back earlier.
+      const std::size_t other = 1 - side;
+      while (!waiting_[other].empty() &&
+             clock_step(waiting_[other].front().stamp, stamp) == ClockStep::set_back)
+        leave(other);
+    }
     last_[side] = stamp;
+    waiting_[side].push_back({stamp, std::move(value)});
+  }
+  /// For live streams: keeps at most `most` waiting.
+  void push_live(std::size_t side, Stamp stamp, T value, std::size_t most) {
     push(side, stamp, std::move(value));
     if (waiting_[side].size() > most) leave(side);
   }
@@ -74,11 +82,16 @@ class StampPairing {
   template <class Has>
   std::optional<Pair> decide(const Has& has) {
     auto& [left, right] = waiting_;
+    // Reading on may come to a clock that is set back, which takes away what waits from before it.
+    const auto is_without = [&] { return left.empty() || right.empty(); };
+    if (is_without()) return std::nullopt;
     const bool is_exact = apart(0, 0) == 0;
-    if (!is_exact && has(1, 2) && apart(0, 1) < apart(0, 0)) {
+    if (!is_exact && has(1, 2) && !is_without() && apart(0, 1) < apart(0, 0)) {
       leave(1);
-    } else if (!is_exact && has(0, 2) && apart(1, 0) < apart(0, 0)) {
+    } else if (!is_exact && has(0, 2) && !is_without() && apart(1, 0) < apart(0, 0)) {
       leave(0);
+    } else if (is_without()) {
+      return std::nullopt;
     } else if (static_cast<double>(apart(0, 0)) > max_skew_ns_) {
       leave(left.front().stamp < right.front().stamp ? 0 : 1);
     } else {

@@ -219,8 +219,7 @@ std::vector<Stamp> stamps_by_frame(const fs::path& path, const std::vector<Frame
   return stamps;
 }
 
-void check_rising(std::span<const Stamp> stamps, std::span<const std::string> names,
-                  const std::string& where) {
+void check_unit(std::span<const Stamp> stamps, const std::string& where) {
   constexpr std::int64_t kShortestStepNs = 1000;
   std::int64_t longest = 0;
   for (std::size_t i = 1; i < stamps.size(); ++i)
@@ -229,6 +228,11 @@ void check_rising(std::span<const Stamp> stamps, std::span<const std::string> na
     throw Error(where + ": all stamps are less than 1 us apart (" + std::to_string(stamps[0].ns) + " ns, " +
                 std::to_string(stamps[1].ns) + " ns), expected ns; write s with a decimal point");
   }
+}
+
+void check_rising(std::span<const Stamp> stamps, std::span<const std::string> names,
+                  const std::string& where) {
+  check_unit(stamps, where);
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i] > stamps[i - 1]) continue;
     throw Error(where + ": frame " + names[i] + " has the stamp " + stamp_text(stamps[i]) +
@@ -242,10 +246,19 @@ StampPairs pair_by_stamps(std::span<const Stamp> left, std::span<const Stamp> ri
   Pairing pairing(max_skew_ms, [&](std::size_t side, Pairing::WaitingItem&& alone) {
     (side == 0 ? found.left_alone : found.right_alone).push_back(alone.value);
   });
-  for (std::size_t i = 0; i < left.size(); ++i) pairing.push(0, left[i], i);
-  for (std::size_t i = 0; i < right.size(); ++i) pairing.push(1, right[i], i);
-  while (const auto pair = pairing.next()) found.pairs.push_back({pair->left.value, pair->right.value});
-  pairing.leave_all();
+  const std::array all{left, right};
+  std::array<std::size_t, 2> read{};
+  // One by one, so that neither side is beyond a clock set back before the other one.
+  const auto reading_on = [&](std::size_t side, std::size_t count) {
+    for (std::size_t& i = read[side]; pairing.waiting(side).size() < count && i < all[side].size(); ++i)
+      pairing.push(side, all[side][i], i);
+    return pairing.waiting(side).size() >= count;
+  };
+  while (const auto pair = pairing.next(reading_on))
+    found.pairs.push_back({pair->left.value, pair->right.value});
+  pairing.leave_all(reading_on);
+  std::ranges::sort(found.left_alone);
+  std::ranges::sort(found.right_alone);
   return found;
 }
 

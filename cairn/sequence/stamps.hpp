@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -23,6 +24,19 @@ std::optional<Stamp> parse_seconds(std::string_view text);
 
 /// "0.2 s" or "1403715274.312143104 s": a stamp without trailing zeros, for messages.
 std::string stamp_text(Stamp stamp);
+
+/// How the stamp of a frame continues those before it: one rule for every reader of frames and for the Follower.
+/// (docs/recordings.md, "Stamps that go back")
+enum class ClockStep : std::uint8_t {
+  forward,
+  repeated,  // or out of order, at most 1 s earlier: such a frame is left out, or refused where a caller gives it
+  set_back,  // more than 1 s earlier: the clock was set back, or a recording began again; a new run begins
+};
+constexpr ClockStep clock_step(Stamp before, Stamp now) {
+  constexpr std::int64_t kOutOfOrderNs = 1'000'000'000;
+  if (now > before) return ClockStep::forward;
+  return before.ns - now.ns > kOutOfOrderNs ? ClockStep::set_back : ClockStep::repeated;
+}
 
 /// One stamp per line; lines that begin with # and empty ones are skipped. Throws Error naming the line.
 std::vector<Stamp> load_stamps(const std::filesystem::path& path);
@@ -49,8 +63,9 @@ std::vector<Stamp> stamps_by_line(const std::filesystem::path& path, const std::
 std::vector<Stamp> stamps_by_frame(const std::filesystem::path& path, const std::vector<FrameStamp>& rows,
                                    const std::vector<std::string>& names);
 
-/// Throws Error unless the stamps ascend, naming the frame and both values; if all of them are within 1 us,
-/// the message says that they are not ns. `where`: origin of the stamps; `names`: of the frames.
+/// Throws Error if all stamps are within 1 us of each other: they are not ns. `where`: their origin.
+void check_unit(std::span<const Stamp> stamps, const std::string& where);
+/// Throws Error unless the stamps ascend, naming the frame and both values, and as check_unit(). `names`: of the frames.
 void check_rising(std::span<const Stamp> stamps, std::span<const std::string> names,
                   const std::string& where);
 

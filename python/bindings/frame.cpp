@@ -4,6 +4,8 @@
 
 #include <cairn/io/disparity_files.hpp>
 #include <cairn/io/image_files.hpp>
+#include <cairn/io/raw_calibration.hpp>
+#include <cairn/io/stereo_calibration.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/output/overlay.hpp>
 #include <cairn/pipeline/segmenter.hpp>
@@ -130,7 +132,51 @@ void bind_method(py::module_& m) {
       Released());
 }
 
+/// io::Rectifier with the calibration of its results, that of the calib.txt of `cairn rectify`.
+class PyRectifier {
+ public:
+  PyRectifier(const std::filesystem::path& path, const std::optional<std::pair<int, int>>& size,
+              double nearest_m)
+      : path_(path), raw_(io::load_raw_calibration(path, size_of(size))), rectify_(raw_) {
+    calibration_.calibration.rig = rectify_.rig();
+    calibration_.calibration.image_size = raw_.image_size;
+    calibration_.calibration.num_disparities =
+        io::disparities_down_to(nearest_m, rectify_.rig(), raw_.image_size.width);
+  }
+
+  [[nodiscard]] std::pair<io::LoadedImage, io::LoadedImage> rectified(const LoadedImage& left,
+                                                                      const LoadedImage& right) const {
+    try {
+      io::LoadedPair pair = rectify_({own(left), own(right), 8});
+      return {std::move(pair.left), std::move(pair.right)};
+    } catch (const Error& error) {
+      throw Error(path_.string() + ": " + error.what());
+    }
+  }
+  [[nodiscard]] const PyCalibration& calibration() const { return calibration_; }
+
+ private:
+  static std::function<Size()> size_of(const std::optional<std::pair<int, int>>& size) {
+    if (!size) return {};
+    return [size] { return Size{size->first, size->second}; };
+  }
+  static io::LoadedImage own(const LoadedImage& image) {
+    io::LoadedImage copy{copied(image.gray()), {}};
+    if (!image.rgb().empty()) copy.rgb = copied(image.rgb());
+    return copy;
+  }
+
+  std::filesystem::path path_;
+  io::RawCalibration raw_;
+  io::Rectifier rectify_;
+  PyCalibration calibration_;
+};
+
 void bind_files_and_images(py::module_& m) {
+  py::class_<PyRectifier>(m, "RectifierData")
+      .def(py::init<const std::filesystem::path&, const std::optional<std::pair<int, int>>&, double>())
+      .def("rectify", &PyRectifier::rectified, Released())
+      .def_property_readonly("calibration", [](const PyRectifier& self) { return self.calibration(); });
   m.def(
       "load_picture", [](const std::filesystem::path& path) { return io::load_picture(path); }, Released());
   m.def(

@@ -185,7 +185,7 @@ class Follower:
         """Processes the next frame and returns its Step. stamp_ns or seconds: time of capture, later than that of the
         previous frame. prior: a MotionPrior since the previous frame. pose: 4 x 4 map_from_camera, if the robot knows
         it; no motion is estimated then. Raises cairn.Error if the size differs from that of the first pair, or the
-        stamp is not later."""
+        stamp is not later. One that is more than 1 s earlier begins a new run: the clock was set back."""
         stamp = stamp_from(stamp_ns, seconds)
         known = None if pose is None else pose_from(pose, "pose")
         data, how = self._pairs.next(left, right, stamp, prior, known)

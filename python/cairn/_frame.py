@@ -180,6 +180,29 @@ class Segmenter:
         return Frame._of(left, *_cairn.segment_pair(left, right, self._calibration, self._config, self._exec))
 
 
+@describes()
+class Rectifier:
+    """Rectifies pairs of raw cameras, like `cairn rectify`. Several threads may share one Rectifier."""
+
+    calibration: Calibration = doc(
+        "Calibration of the rectified pairs, with their number of disparities: the rig of segment()",
+        lambda self: self._data.calibration)
+    rig: Rig = doc("Rig of the rectified pairs", lambda self: self.calibration.rig)
+
+    def __init__(self, calibration: PathLike, image_size: Optional[Tuple[int, int]] = None, *,
+                 nearest_m: float = 0.0) -> None:
+        """calibration: a file of raw cameras, from `cairn calibrate`, OpenCV, ROS, EuRoC or Kalibr (docs/formats.md).
+        image_size: (width, height), if the file has none. nearest_m: nearest distance of interest, for the number of
+        disparities; 0 = five baselines. Needs OpenCV's calib3d; raises cairn.Error without it."""
+        self._data = _cairn.RectifierData(calibration, image_size, nearest_m)
+
+    def rectify(self, left: ImageLike, right: ImageLike, *, bgr: bool = False) -> Tuple[NDArray[numpy.uint8], NDArray[numpy.uint8]]:
+        """Rectifies one pair of the calibrated size: two arrays like those given, (H, W) or (H, W, 3) uint8; bgr=True:
+        in OpenCV's order, also of the results. Areas beyond the border of the raw images are black."""
+        both = self._data.rectify(left, right)
+        return tuple(np.ascontiguousarray(one[..., ::-1]) if bgr and one.ndim == 3 else one for one in both)
+
+
 # ---- files and images ----
 
 

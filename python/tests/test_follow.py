@@ -162,7 +162,11 @@ def test_stamps_must_increase_and_sizes_stay_the_same(pairs, rig):
         follower.next(left, right)
     with pytest.raises(cairn.Error, match="stamp_ns: found seconds as well"):
         follower.next(left, right, 20, seconds=1)
-    assert follower.next(left, right, np.int64(1_700_000_000_000_000_000)).index == 1
+    ids = {track.id for track in follower.next(left, right, np.int64(1_700_000_000_000_000_000)).tracks}
+    with pytest.raises(cairn.Error, match="is not later than the one before"):
+        follower.next(left, right, 1_699_999_999_500_000_000)
+    again = follower.next(left, right, 1_600_000_000_000_000_000)  # set back: a new run
+    assert again.index == 2 and ids.isdisjoint(track.id for track in again.tracks)
 
 
 def test_refusals_have_the_wording_of_the_command(command, tmp_path):

@@ -132,8 +132,9 @@ def test_every_class_can_be_pickled(sample):
     reached = {type(value) for value in values} | {cairn.Frame, cairn.Object, cairn.Objects, cairn.GroundPlane}
     reached |= {type(getattr(value, name)) for value in values for name in shown_by(value)}
     public = {getattr(cairn, name) for name in cairn.__all__ if isinstance(getattr(cairn, name), type)}
-    following = {cairn.Follower, getattr(cairn, "Following", None)}
-    assert {c for c in public if not issubclass(c, Exception)} - following <= reached
+    # What is made from a file or goes on from frame to frame.
+    others = {cairn.Follower, getattr(cairn, "Following", None), cairn.Rectifier}
+    assert {c for c in public if not issubclass(c, Exception)} - others <= reached
 
 
 def test_stages_and_segmenters_accept_unpickled_values(sample):

@@ -4,8 +4,10 @@
 #include <message_filters/sync_policies/approximate_time.h>
 #include <message_filters/synchronizer.h>
 
+#include <cairn/input/ros_pictures.hpp>
 #include <cairn/ros/from_step.hpp>
 #include <cairn/sequence/follower.hpp>
+#include <cairn/sequence/stamps.hpp>
 #include <cairn_ros/conversions.hpp>
 #include <geometry_msgs/msg/transform_stamped.hpp>
 #include <memory>
@@ -61,16 +63,22 @@ class SegmentNode : public rclcpp::Node {
             const CameraInfo::ConstSharedPtr& left_info, const CameraInfo::ConstSharedPtr& right_info) {
     try {
       const cairn::Stamp stamp = stamp_from(left->header);
-      // Also after a bag starts again or a simulator is reset: earlier frames are then of no use.
-      if (!follower_ || stamp < last_) {
+      // A bag that starts again or a simulator that is reset is a new run, see clock_step(), maybe of another rig.
+      const auto clock = follower_ ? cairn::clock_step(last_, stamp) : cairn::ClockStep::forward;
+      if (clock == cairn::ClockStep::repeated)
+        throw cairn::Error("left out: a pair with a stamp that is not later than the one before");
+      if (clock == cairn::ClockStep::set_back) RCLCPP_WARN(get_logger(), "clock set back, a new run begins");
+      if (!follower_ || clock == cairn::ClockStep::set_back) {
         rig_ = cairn::ros::rig_of(camera_info_from(*left_info), camera_info_from(*right_info),
                                   cairn::Size{static_cast<int>(left->width), static_cast<int>(left->height)});
         follower_.emplace(config_, rig_, exec_);
       }
       last_ = stamp;
-      const Picture seen = picture_from(*left);
-      const Picture other = picture_from(*right);
-      const auto pair = cairn::StereoPair::from(seen.gray, other.gray, seen.rgb);
+      const cairn::io::LoadedPair images = cairn::input::pictures_of(
+          image_from(*left), "left/image_rect", image_from(*right), "right/image_rect", bits_, {});
+      bits_ = images.bits;
+      const cairn::io::LoadedImage& seen = images.left;
+      const auto pair = cairn::StereoPair::from(seen.gray, images.right.gray, seen.rgb);
       config_ = follower_->config();  // of this frame; it may change options for the next one
       const cairn::TrackedFrame step = follower_->next(pair, stamp);
       if (step.control) {
@@ -84,7 +92,8 @@ class SegmentNode : public rclcpp::Node {
     }
   }
 
-  void publish(const cairn::TrackedFrame& step, const Picture& seen, const std::string& camera) {
+  void publish(const cairn::TrackedFrame& step, const cairn::io::LoadedImage& seen,
+               const std::string& camera) {
     const cairn::ros::Header header = cairn::ros::header_of(step.stamp, camera);
     const cairn::ros::FrameNames names{camera, camera + "_floor", camera + "_map"};
     if (const auto floor = cairn::ros::floor_transform_of(step.stamp, names, step.frame.ground, rig_)) {
@@ -109,6 +118,7 @@ class SegmentNode : public rclcpp::Node {
   std::optional<cairn::StereoRig> rig_;
   std::optional<cairn::Follower> follower_;
   cairn::Stamp last_;  // of the pair before
+  int bits_ = 8;       // of the images so far
   rclcpp::Publisher<Detections>::SharedPtr objects_;
   rclcpp::Publisher<Disparity>::SharedPtr disparity_;
   rclcpp::Publisher<PointCloud>::SharedPtr obstacles_;

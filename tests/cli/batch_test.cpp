@@ -91,6 +91,17 @@ class Batch : public CommandTest {
   }
 };
 
+TEST_F(Batch, ScalesACalibrationWhenAsked) {
+  pair_in("in/00", {48, 36});
+  write(at("in/00/calib.txt"), "fx=120\nfy=120\ncx=48\ncy=36\nbaseline=0.1\nndisp=32\nwidth=96\nheight=72\n");
+  EXPECT_NE(parsed(undisturbed()).at(0)["error"].get<std::string>().find("--scale-calibration"),
+            std::string::npos);
+  const Outcome planned = run({"batch", "plan", path("in"), "-o", path("scaled"), "--scale-calibration"});
+  ASSERT_EQ(planned.code, 0) << planned.err;
+  work("1/1", "scaled");
+  EXPECT_EQ(parsed(merged("scaled")).at(0)["rig"]["focal_px"], 60);
+}
+
 TEST_F(Batch, HasOneRowPerFrameInOrder) {
   frames(3);
   const std::vector<Json> rows = parsed(undisturbed());

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/geometry.hpp>
 #include <cairn/diagnosis/findings.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
@@ -312,6 +313,129 @@ TEST_F(Doctor, RefusesBadInput) {
   refuses({"doctor", pair[0], pair[1], "--set", "match.num_disparities=0"}, {"match.num_disparities"});
   write(at("noise.txt"), "no calibration at all");
   refuses({"doctor", pair[0], pair[1], "--calib", path("noise.txt")}, {"noise.txt"});
+}
+
+using Pixels = Image<Rgb>;
+
+Pixels clockwise(const Pixels& image) {
+  Pixels result({image.height(), image.width()});
+  for (int y = 0; y < result.height(); ++y)
+    for (int x = 0; x < result.width(); ++x) result(x, y) = image(y, image.height() - 1 - x);
+  return result;
+}
+
+std::string calibration_text(const StereoRig& rig, const io::Calibration& from) {
+  return "fx=" + std::to_string(rig.focal_px) + "\nfy=" + std::to_string(rig.focal_px) +
+         "\ncx=" + std::to_string(rig.cx_px) + "\ncy=" + std::to_string(rig.cy_px) +
+         "\nbaseline=" + std::to_string(rig.baseline_m) +
+         "\nndisp=" + std::to_string(from.num_disparities.value()) + "\n";
+}
+
+std::vector<double> distances(const std::string& objects_json) {
+  std::vector<double> all;
+  const Json document = Json::parse(objects_json);
+  for (const Json& object : document["objects"]) all.push_back(object["position_m"].back());
+  return all;
+}
+
+/// docs/use_your_own_camera.md, "Cameras one above the other": the finding names the rotation, and by the page's
+/// formulas the calibration follows.
+TEST_F(Doctor, AVerticalHeadIsUsableAfterTheRotationThatItNames) {
+  const samples::Sample side_by_side = samples::load("four_in_a_row");
+  const StereoRig rig = *side_by_side.calibration.rig;
+  // The head stands upright: what was left is up.
+  const Pixels upper = clockwise(side_by_side.images.left.rgb);
+  const Pixels lower = clockwise(side_by_side.images.right.rgb);
+  io::save_png(at("upper.png"), upper.view());
+  io::save_png(at("lower.png"), lower.view());
+  const Outcome vertical = run({"doctor", path("upper.png"), path("lower.png")});
+  EXPECT_EQ(vertical.code, 1);
+  EXPECT_NE(vertical.out.find("cameras one above the other"), std::string::npos) << vertical.out;
+  EXPECT_NE(vertical.out.find("rotate both images by 90 degrees counter-clockwise"), std::string::npos);
+  StereoRig upright = rig;
+  upright.cx_px = static_cast<float>(side_by_side.images.left.gray.height() - 1) - rig.cy_px;
+  upright.cy_px = rig.cx_px;
+
+  // Counter-clockwise is three times clockwise; cx and cy by the page's table.
+  fs::create_directories(at("turned"));
+  for (const auto& [name, image] :
+       {std::pair{"turned/left.png", &upper}, std::pair{"turned/right.png", &lower}}) {
+    const Pixels back = clockwise(clockwise(clockwise(*image)));
+    io::save_png(at(name), back.view());
+  }
+  StereoRig turned = upright;
+  turned.cx_px = upright.cy_px;
+  turned.cy_px = static_cast<float>(upper.width() - 1) - upright.cx_px;
+  write(at("turned/calib.txt"), calibration_text(turned, side_by_side.calibration));
+  const Outcome doctor = run({"doctor", path("turned")});
+  EXPECT_EQ(doctor.code, 0) << doctor.out;
+  const std::vector<double> expected = distances(run({"segment", sample("four_in_a_row"), "--json"}).out);
+  ASSERT_GE(expected.size(), 4U);
+  EXPECT_EQ(distances(run({"segment", path("turned"), "--json"}).out), expected);
+}
+
+TEST_F(Doctor, PortraitImagesAreSegmented) {
+  const samples::Sample whole = samples::load("four_in_a_row");
+  const Size size{whole.images.left.gray.width() * 5 / 8, whole.images.left.gray.height()};
+  ASSERT_LT(size.width, size.height);
+  fs::create_directories(at("portrait"));
+  const int from = whole.images.left.gray.width() / 4;
+  for (const auto& [name, image] :
+       {std::pair{"left.png", &whole.images.left.rgb}, std::pair{"right.png", &whole.images.right.rgb}}) {
+    Pixels part(size);
+    for (int y = 0; y < size.height; ++y) std::copy_n(image->row(y) + from, size.width, part.row(y));
+    io::save_png(at("portrait") / name, part.view());
+  }
+  StereoRig rig = *whole.calibration.rig;
+  rig.cx_px -= static_cast<float>(from);
+  write(at("portrait/calib.txt"), calibration_text(rig, whole.calibration));
+  EXPECT_EQ(run({"doctor", path("portrait")}).code, 0);
+  const Outcome outcome = run({"segment", path("portrait"), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<double> all = distances(run({"segment", sample("four_in_a_row"), "--json"}).out);
+  const std::vector<double> found = distances(outcome.out);
+  ASSERT_GE(found.size(), 2U);
+  for (const double distance : found) {
+    EXPECT_TRUE(std::ranges::any_of(all, [&](double other) {
+      return std::abs(distance - other) < 0.05 * other;
+    })) << distance;
+  }
+}
+
+/// The two images of a pair in one.
+Pixels joined(const Pixels& left, const Pixels& right, bool side_by_side) {
+  const Size size = left.size();
+  Pixels both(side_by_side ? Size{2 * size.width, size.height} : Size{size.width, 2 * size.height});
+  for (int y = 0; y < size.height; ++y) {
+    std::copy_n(left.row(y), size.width, both.row(y));
+    std::copy_n(right.row(y), size.width,
+                side_by_side ? both.row(y) + size.width : both.row(y + size.height));
+  }
+  return both;
+}
+
+TEST_F(Doctor, StillsWithBothImagesNeedTheirLayout) {
+  const samples::Sample pair = samples::load("four_in_a_row");
+  fs::create_directories(at("stills"));
+  fs::copy_file(samples::folder("four_in_a_row") / "calib.txt", at("stills/calib.txt"));
+  const std::string expected = run({"segment", sample("four_in_a_row"), "--json"}).out;
+  for (const std::string layout : {"side_by_side", "top_bottom"}) {
+    const Pixels both = joined(pair.images.left.rgb, pair.images.right.rgb, layout == "side_by_side");
+    for (const char* name : {"stills/1.png", "stills/2.png"}) io::save_png(at(name), both.view());
+    const Outcome outcome = run({"segment", path("stills/1.png"), "--layout", layout, "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(Json::parse(outcome.out)["objects"], Json::parse(expected)["objects"]);
+    EXPECT_EQ(run({"doctor", path("stills"), "--layout", layout}).code, 0);
+    EXPECT_EQ(run({"segment", path("stills"), "--layout", layout, "-o", path("result")}).code, 0);
+    EXPECT_EQ(content(at("result/2/objects.png")), content(at("result/1/objects.png")));
+    EXPECT_EQ(run({"disparity", path("stills/1.png"), "--layout", layout, "-o", path("d.png")}).code, 0);
+  }
+  refuses({"segment", path("stills/1.png"), path("stills/2.png"), "--layout", "top_bottom"},
+          {"--layout top_bottom", "stills/2.png"});
+  refuses({"segment", path("stills/1.png"), "--layout", "diagonal"}, {"--layout", "diagonal", "top_bottom"});
+  Pixels odd({33, 20});
+  io::save_png(at("odd.png"), odd.view());
+  refuses({"segment", path("odd.png"), "--layout", "side_by_side"}, {"odd.png", "is 33x20", "even width"});
 }
 
 }  // namespace

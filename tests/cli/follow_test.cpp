@@ -348,6 +348,26 @@ TEST_F(Follow, AMapStoresLandmarks) {
   for (const Json& track : last["tracks"]) EXPECT_TRUE(track.contains("landmark")) << track;
 }
 
+TEST_F(Follow, ANewRunBeginsWhereTheClockIsSetBack) {
+  standing(12);
+  // The same stamps again, as of a recording that is played twice.
+  write(at("in/stamps.txt"), "5\n5.1\n5.2\n5.3\n5.4\n6.5\n5\n5.1\n5.2\n5.2\n5.3\n5.4\n");
+  const Outcome outcome = run({"follow", path("in"), "--map", path("room.db"), "-o", path("out"), "--set",
+                               "landmarks.min_baseline=0"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* words :
+       {"clock set back, a new run begins: 1 frame, the first is 6 (5 s after 6.5 s)",
+        "not later than the one before: 1 frame skipped, the first is 9 (5.2 s after 5.2 s)"})
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  const std::vector<Json> lines = lines_of(at("out/tracks.jsonl"));
+  ASSERT_EQ(lines.size(), 11U);
+  EXPECT_EQ(lines[6]["stamp_ns"], 5'000'000'000);
+  const std::string runs = run({"map", "show", path("room.db")}).out;
+  EXPECT_NE(runs.find("done       6     5.00   6.50"), std::string::npos) << runs;
+  EXPECT_NE(runs.find("done       5     5.00   5.40"), std::string::npos) << runs;
+  EXPECT_EQ(run({"map", "check", path("room.db")}).code, 0);
+}
+
 TEST_F(Follow, AnErrorDuringTheRunKeepsEarlierResults) {
   standing(5);
   const Image<Gray> small({160, 120}, Gray{9}, {});

@@ -231,14 +231,9 @@ class CameraSequence : public SourceSequence {
                   text(image.left.gray.size()) + " as the left one");
     }
     is_after_gap_ = is_after_gap_ || image.is_after_gap;
-    if (last_stamp_ && image.stamp <= *last_stamp_) {
-      remark(remarks_, {"frame with a stamp that is not later than the one before", 1,
-                        io::number_text(count_), true, false});
-      return std::nullopt;
-    }
+    if (!watch_.continues(image.stamp, io::number_text(count_), remarks_)) return std::nullopt;
     const std::size_t index = count_++;
     if (!options_.frames.contains(index)) return std::nullopt;
-    last_stamp_ = image.stamp;
     io::LoadedPair pair =
         calibration_.rectified({std::move(image.left), {std::move(image.right), {}}, 8}, pool_);
     SequenceFrame frame{io::number_text(index),     index, image.stamp,  std::move(pair.left),
@@ -309,7 +304,6 @@ class CameraSequence : public SourceSequence {
   CameraNames names_;
   SourceOptions options_;
   Pool pool_;
-  std::optional<Stamp> last_stamp_;
   std::size_t count_ = 0;
   bool is_after_gap_ = false;
   bool has_ended_ = false;

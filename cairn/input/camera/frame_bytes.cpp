@@ -148,12 +148,6 @@ FrameBytes rgb_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride,
           {}};
 }
 
-Layout layout_of(std::string_view name) {
-  if (name.empty() || name == "side_by_side") return Layout::side_by_side;
-  if (name == "top_bottom") return Layout::top_bottom;
-  throw Error("layout: found " + std::string(name) + ", expected side_by_side or top_bottom");
-}
-
 TwoFrames halves_of(const FrameBytes& bytes, Layout layout) {
   const bool side_by_side = layout == Layout::side_by_side;
   // Halves must not share colour differences.

@@ -41,14 +41,8 @@ FrameBytes yuyv_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride
 FrameBytes rgb_bytes(Size size, const std::uint8_t* data, std::ptrdiff_t stride, int step, int red, int green,
                      int blue);
 
-/// The arrangement of the two images in a frame.
-enum class Layout : std::uint8_t {
-  one,           // there is only one
-  side_by_side,  // left and right half
-  top_bottom,
-};
-/// Throws Error for other names. Empty: side_by_side.
-Layout layout_of(std::string_view name);
+using io::Layout;
+using io::layout_of;
 
 struct TwoFrames {
   FrameBytes left;

@@ -224,14 +224,9 @@ class Ros2Sequence : public SourceSequence {
   /// nullopt if it is outside the range, or not later than the previous one.
   std::optional<SequenceFrame> frame_of(const Pair& pair) {
     const Stamp stamp = ros::stamp_of(pair.left.value.image.header.stamp);
-    if (last_stamp_ && stamp <= *last_stamp_) {
-      remark(remarks_, {"frame with a stamp that is not later than the one before", 1,
-                        io::number_text(count_), true, false});
-      return std::nullopt;
-    }
+    if (!watch_.continues(stamp, io::number_text(count_), remarks_)) return std::nullopt;
     const std::size_t index = count_++;
     if (!options_.frames.contains(index)) return std::nullopt;
-    last_stamp_ = stamp;
     io::LoadedPair images =
         pictures_of(pair.left.value.image, topics_[0], pair.right.value.image, topics_[1], bits_, pool_);
     bits_ = images.bits;
@@ -278,7 +273,6 @@ class Ros2Sequence : public SourceSequence {
   Pairing pairing_;
   std::array<std::optional<ros::CameraInfo>, 2> last_infos_;
   std::array<bool, 2> has_come_{};
-  std::optional<Stamp> last_stamp_;
   std::size_t count_ = 0;
   int bits_ = 8;
   std::atomic<bool> is_stopped_ = false;

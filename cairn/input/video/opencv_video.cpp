@@ -177,6 +177,7 @@ class VideoSequence : public SourceSequence {
   std::optional<SequenceFrame> advance() override {
     while (std::optional<NextFrame> both = next_pair()) {
       const std::string name = io::number_text(both->index);
+      if (!watch_.continues(both->stamp, name, remarks_)) continue;
       if (!both->pair) {
         remark_on({"frame that cannot be read", 1, name, true, true});
         continue;
@@ -221,19 +222,19 @@ class OneVideo : public VideoSequence {
   }
 
   [[nodiscard]] io::LoadedPair halves(const cv::Mat& image) {
-    const bool side_by_side = options().layout == "side_by_side";
-    const int length = side_by_side ? image.cols : image.rows;
-    if (length % 2 != 0) {
-      throw Error(video_.path().string() + ": is " + text(Size{image.cols, image.rows}) +
-                  ", expected an even " + (side_by_side ? "width" : "height") + " with --layout " +
-                  options().layout);
+    const io::Layout layout = io::layout_of(options().layout);
+    Size half;
+    try {
+      half = io::half_of({image.cols, image.rows}, layout);
+    } catch (const Error& error) {
+      throw Error(video_.path().string() + ": " + error.what());
     }
-    const int half = length / 2;
-    const auto part = [&](int begin, int end) {
-      return side_by_side ? image.colRange(begin, end) : image.rowRange(begin, end);
-    };
+    const cv::Size size(half.width, half.height);
+    const bool side_by_side = layout == io::Layout::side_by_side;
+    const cv::Point second(side_by_side ? half.width : 0, side_by_side ? 0 : half.height);
     const bool is_grey = video_.is_grey();
-    return {picture_of(part(0, half), is_grey, pool()), picture_of(part(half, length), is_grey, pool()), 8};
+    return {picture_of(image(cv::Rect({0, 0}, size)), is_grey, pool()),
+            picture_of(image(cv::Rect(second, size)), is_grey, pool()), 8};
   }
 
   VideoFile video_;

@@ -138,46 +138,16 @@ cairn::Stamp stamp_from(const auto& header) {
   return cairn::ros::stamp_of({header.stamp.sec, header.stamp.nanosec});
 }
 
-/// Grey, and colour if available.
-struct Picture {
-  cairn::Image<cairn::Gray> gray;
-  cairn::Image<cairn::Rgb> rgb;
-};
-
-/// mono8, rgb8 and bgr8. Throws cairn::Error.
-Picture picture_from(const auto& message) {
-  const bool is_grey = message.encoding == "mono8";
-  const bool is_bgr = message.encoding == "bgr8";
-  if (!is_grey && !is_bgr && message.encoding != "rgb8") {
-    throw cairn::Error("image: found the encoding \"" + message.encoding +
-                       "\", expected mono8, rgb8 or bgr8");
-  }
-  const std::size_t width = message.width;
-  const std::size_t channels = is_grey ? 1 : 3;
-  if (width == 0 || message.height == 0 || message.step < width * channels ||
-      message.data.size() < std::size_t{message.step} * message.height) {
-    throw cairn::Error("image: found " + std::to_string(message.data.size()) + " bytes for " +
-                       std::to_string(width) + " x " + std::to_string(message.height) +
-                       ", expected height rows of step bytes");
-  }
-  const cairn::Size size{static_cast<int>(width), static_cast<int>(message.height)};
-  Picture picture{cairn::Image<cairn::Gray>(size), {}};
-  if (!is_grey) picture.rgb = cairn::Image<cairn::Rgb>(size);
-  for (int y = 0; y < size.height; ++y) {
-    const auto* const row = message.data.data() + std::size_t{message.step} * static_cast<std::size_t>(y);
-    if (is_grey) {
-      std::copy_n(row, width, picture.gray.row(y));
-      continue;
-    }
-    for (int x = 0; x < size.width; ++x) {
-      const auto* const pixel = row + 3 * x;
-      const cairn::Rgb colour{pixel[is_bgr ? 2 : 0], pixel[1], pixel[is_bgr ? 0 : 2]};
-      picture.rgb(x, y) = colour;
-      picture.gray(x, y) =
-          static_cast<cairn::Gray>((77 * colour.r + 150 * colour.g + 29 * colour.b + 128) >> 8);
-    }
-  }
-  return picture;
+/// The same with its pixels; for input::pictures_of().
+cairn::ros::Image image_from(const auto& message) {
+  cairn::ros::Image to;
+  to.height = message.height;
+  to.width = message.width;
+  to.encoding = message.encoding;
+  to.is_bigendian = message.is_bigendian;
+  to.step = message.step;
+  to.data.assign(message.data.begin(), message.data.end());
+  return to;
 }
 
 }  // namespace cairn_ros

@@ -120,6 +120,32 @@ TEST_F(McapSequence, PairsImagesByTheirStamps) {
   EXPECT_NE(refusal(strict).find("--max-skew"), std::string::npos) << refusal(strict);
 }
 
+TEST_F(McapSequence, ANewRunBeginsWhereTheClockIsSetBack) {
+  {
+    CameraFile camera(file());
+    const auto left = camera.topic<ros::Image>("/cam/left/image_rect");
+    const auto right = camera.topic<ros::Image>("/cam/right/image_rect");
+    unsigned seed = 0;
+    // The third right image of the first run is missing; the second run begins with its left image.
+    for (const int ms : {9000, 9100, 9200, 9200, 1000, 1100}) {
+      const Stamp stamp{ms * 1'000'000LL};
+      camera.add(left, {++seed}, message_of_dots(stamp, seed));
+      if (seed != 3) camera.add(right, {seed}, message_of_dots(stamp, 100 + seed));
+    }
+  }
+  const auto sequence = open();
+  std::vector<std::int64_t> seen;
+  while (const auto frame = sequence->next()) {
+    seen.push_back(frame->stamp.ns / 1'000'000);
+    EXPECT_EQ(frame->after_gap, false);
+  }
+  EXPECT_EQ(seen, (std::vector<std::int64_t>{9000, 9100, 9200, 1000, 1100}));
+  ASSERT_FALSE(sequence->remarks().empty());
+  const SourceRemark& last = sequence->remarks().back();
+  EXPECT_EQ(last.what, "clock set back, a new run begins");
+  EXPECT_EQ(last.first, "000003 (1 s after 9.2 s)");
+}
+
 TEST_F(McapSequence, DeliversTheRequestedNumberOfFrames) {
   {
     CameraFile camera(file());
@@ -284,11 +310,11 @@ TEST_F(McapSequence, OtherRecordingsAreRefusedInOneLine) {
     CameraFile camera(file());
     for (const char* name : {"/left/image", "/right/image"}) {
       ros::Image image = message_of_dots({1}, 1);
-      image.encoding = "bayer_rggb8";
+      image.encoding = "yuv410";
       camera.add(camera.topic<ros::Image>(name), {1}, image);
     }
   }
-  EXPECT_NE(refusal().find("has the encoding bayer_rggb8, expected mono8"), std::string::npos) << refusal();
+  EXPECT_NE(refusal().find("has the encoding yuv410, expected grey (mono8"), std::string::npos) << refusal();
   {
     CameraFile camera(file());
     for (const char* name : {"/left/image", "/right/image"}) {

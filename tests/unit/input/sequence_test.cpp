@@ -9,6 +9,7 @@
 #include <cairn/io/raw_calibration.hpp>
 #include <cairn/sequence/stamp_pairing.hpp>
 #include <cairn/sequence/stamps.hpp>
+#include <cmath>
 #include <filesystem>
 #include <support/collection.hpp>
 #include <support/temporary_folder.hpp>
@@ -153,10 +154,42 @@ TEST(StampPairing, PairsSimultaneousFrames) {
 
 TEST(StampPairing, RestartsIfTheClockWasSetBack) {
   LivePairs pairs(0);
-  EXPECT_FALSE(pairs.push(0, 1000, 1));
+  EXPECT_FALSE(pairs.push(0, 9000, 1));
   EXPECT_FALSE(pairs.push(0, 500, 2));
   EXPECT_EQ(pairs.push(1, 500, 3), (std::pair{2, 3}));
   EXPECT_EQ(pairs.alone, 1);
+  // The other side first: its images from after that stay.
+  EXPECT_FALSE(pairs.push(0, 9000, 4));
+  EXPECT_EQ(pairs.push(1, 9000, 5), (std::pair{4, 5}));
+  EXPECT_FALSE(pairs.push(1, 0, 6));
+  EXPECT_FALSE(pairs.push(1, 33, 7));
+  EXPECT_EQ(pairs.push(0, 33, 8), (std::pair{8, 7}));
+  EXPECT_EQ(pairs.alone, 2);
+}
+
+TEST(Stamps, PairFilesBeforeAndAfterAClockThatWasSetBack) {
+  const auto stamps = [](std::initializer_list<std::int64_t> ms) {
+    std::vector<Stamp> list;
+    for (const std::int64_t one : ms) list.push_back(Stamp{one * 1'000'000});
+    return list;
+  };
+  // The left image at 9100 ms and the right one at 100 ms have no partner.
+  const StampPairs pairs = pair_by_stamps(stamps({9000, 9100, 0, 200}), stamps({9000, 0, 100, 200}), 5);
+  ASSERT_EQ(pairs.pairs.size(), 3U);
+  EXPECT_EQ(pairs.pairs[1].left, 2U);
+  EXPECT_EQ(pairs.pairs[1].right, 1U);
+  EXPECT_EQ(pairs.pairs[2].left, 3U);
+  EXPECT_EQ(pairs.pairs[2].right, 3U);
+  EXPECT_EQ(pairs.left_alone, (std::vector<std::size_t>{1}));
+  EXPECT_EQ(pairs.right_alone, (std::vector<std::size_t>{2}));
+}
+
+TEST(Stamps, ClockStepsAreForwardRepeatedOrSetBack) {
+  const auto step = [](double s) { return clock_step(Stamp{5'000'000'000}, Stamp{std::llround(s * 1e9)}); };
+  EXPECT_EQ(step(5.000000001), ClockStep::forward);
+  EXPECT_EQ(step(5), ClockStep::repeated);
+  EXPECT_EQ(step(4), ClockStep::repeated);
+  EXPECT_EQ(step(3.999), ClockStep::set_back);
 }
 
 TEST(FrameRanges, AreParsedOrRefused) {
@@ -246,13 +279,24 @@ TEST(SequenceOfFolders, DeliversTheFramesOfARangeOnly) {
   EXPECT_TRUE(has(refusal([&] { (void)open(folder, options); }), {"has 6 frames", "--frames"}));
 }
 
-TEST(SequenceOfFolders, RefusesStampsThatDoNotIncrease) {
+TEST(SequenceOfFolders, LeavesOutRepeatedStampsAndBeginsARunWhereTheClockWasSetBack) {
   const TemporaryFolder folder;
-  save_frames(folder, 3);
-  (void)folder.with("stamps.txt", "1000000000\n2000000000\n2000000000\n");
-  EXPECT_TRUE(has(refusal([&] { (void)open(folder); }), {"stamps.txt", "frame 002", "2 s", "frame 001"}));
-  (void)folder.with("stamps.txt", "1.5\n2.5\n2.25\n");
-  EXPECT_TRUE(has(refusal([&] { (void)open(folder); }), {"frame 002", "2.25 s", "2.5 s of frame 001"}));
+  save_frames(folder, 6);
+  (void)folder.with("stamps.txt", "# s\n8.5\n9.0\n9.0\n8.25\n1.5\n1.75\n");
+  const auto sequence = open(folder);
+  const auto frames = all_of(*sequence);
+  EXPECT_EQ(stamps_of(frames), (Numbers{8500000000, 9000000000, 1500000000, 1750000000}));
+  ASSERT_EQ(sequence->remarks().size(), 2U);
+  const SourceRemark& repeated = sequence->remarks()[0];
+  EXPECT_EQ(repeated.what, "frame with a stamp that is not later than the one before");
+  EXPECT_EQ(repeated.count, 2U);
+  EXPECT_EQ(repeated.first, "002 (9 s after 9 s)");
+  EXPECT_TRUE(repeated.is_left_out);
+  const SourceRemark& set_back = sequence->remarks()[1];
+  EXPECT_EQ(set_back.what, "clock set back, a new run begins");
+  EXPECT_EQ(set_back.count, 1U);
+  EXPECT_EQ(set_back.first, "004 (1.5 s after 9 s)");
+  EXPECT_FALSE(set_back.is_left_out);
 }
 
 TEST(SequenceOfFolders, RefusesStampsInAnotherUnit) {
@@ -352,6 +396,31 @@ TEST(SequenceOfFolders, ReportsAFrozenCamera) {
   EXPECT_TRUE(has(sequence->remarks()[0].what, {"right image repeated from the frame before"}));
 }
 
+TEST(SequenceOfFolders, ReadsImagesThatHoldBoth) {
+  const TemporaryFolder folder;
+  (void)folder.with("calib.txt", "fx=20\nfy=20\ncx=3\ncy=3\nbaseline=0.1\n");
+  for (const int i : {9, 10}) {
+    const Image<Gray> left = picture(i);
+    const Image<Gray> right = picture(100 + i);
+    Image<Gray> both({2 * kSize.width, kSize.height});
+    for (int y = 0; y < kSize.height; ++y) {
+      std::copy_n(left.row(y), kSize.width, both.row(y));
+      std::copy_n(right.row(y), kSize.width, both.row(y) + kSize.width);
+    }
+    io::save_png(folder.path() / (std::to_string(i) + ".png"), both.view());
+  }
+  SourceOptions options;
+  options.layout = "side_by_side";
+  const auto sequence = open(folder, options);
+  EXPECT_EQ(sequence->image_size(), kSize);
+  EXPECT_TRUE(sequence->rig());
+  const auto frames = all_of(*sequence);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].name, "9");
+  EXPECT_TRUE(is_equal(frames[1].left.gray, picture(10)));
+  EXPECT_TRUE(is_equal(frames[1].right, picture(110)));
+}
+
 TEST(SequenceOfFolders, KeepsOneScaleForDeepImages) {
   const TemporaryFolder folder;
   for (const auto& [name, value] : {std::pair{"0", 4000}, std::pair{"1", 1000}}) {
@@ -408,7 +477,7 @@ TEST(Sources, RefuseInvalidOnes) {
   options.layout = "diagonal";
   EXPECT_TRUE(has(refused(at, options), {"--layout", "diagonal", "side_by_side"}));
   options.layout = "top_bottom";
-  EXPECT_TRUE(has(refused(at, options), {"--layout top_bottom", "is none"}));
+  EXPECT_TRUE(has(refused(at, options), {"contains no images", "--layout"}));
   options = {};
   options.topics = "/a,/b";
   EXPECT_TRUE(has(refused(at, options), {"--topics /a,/b", "is none"}));

@@ -430,11 +430,11 @@ TEST(RosImages, DeepImagesKeepTheirHighBits) {
 TEST(RosImages, RefusesInvalidImages) {
   const Image sound = image("mono8", 2, 2, {1, 2, 3, 4});
   Image other = sound;
-  other.encoding = "bayer_rggb8";
+  other.encoding = "yuv410";
   EXPECT_EQ(
       message_of([&] { images(sound, other); }),
-      "/r: has the encoding bayer_rggb8, expected mono8, mono16, rgb8, bgr8, rgba8 or bgra8 (convert others "
-      "first)");
+      "/r: has the encoding yuv410, expected grey (mono8, mono16), colours (rgb8, bgr8, rgba8, bgra8), a Bayer "
+      "pattern (bayer_rggb8 ...) or YUV (yuv422, yuv422_yuy2, nv12, nv21, i420)");
   other = sound;
   other.data.pop_back();
   EXPECT_NE(

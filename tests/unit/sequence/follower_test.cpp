@@ -165,6 +165,30 @@ TEST(Follower, RefusesStampsThatDoNotIncrease) {
   EXPECT_EQ(follower.next(sample.pair(), frame_stamp(3)).index, 1);  // and continues
 }
 
+TEST(Follower, BeginsANewRunWhereTheClockIsSetBack) {
+  const samples::Sample sample = samples::load("four_in_a_row");
+  Follower follower(config_for(sample), sample.calibration.rig);
+  follower.next(sample.pair(), frame_stamp(100));
+  const TrackedFrame before = follower.next(sample.pair(), frame_stamp(101));
+  const TrackedFrame again = follower.next(sample.pair(), frame_stamp(2));
+  EXPECT_EQ(again.index, 2);
+  EXPECT_TRUE(again.motion.is_new_keyframe);
+  ASSERT_FALSE(again.tracks.list.empty());
+  for (const Track& track : again.tracks.list) {
+    EXPECT_EQ(track.first, frame_stamp(2));
+    EXPECT_GE(number(track.id), before.tracks.next);  // ids are not used twice
+  }
+  // As from the beginning, but for the ids.
+  Follower fresh(config_for(sample), sample.calibration.rig);
+  fresh.next(sample.pair(), frame_stamp(2));
+  const TrackedFrame expected = fresh.next(sample.pair(), frame_stamp(3));
+  const TrackedFrame found = follower.next(sample.pair(), frame_stamp(3));
+  EXPECT_EQ(found.map_from_camera.translation_m.x, expected.map_from_camera.translation_m.x);
+  ASSERT_EQ(found.tracks.list.size(), expected.tracks.list.size());
+  for (std::size_t i = 0; i < found.tracks.list.size(); ++i)
+    EXPECT_EQ(found.tracks.list[i].hits, expected.tracks.list[i].hits);
+}
+
 TEST(Follower, RefusesAnImageOfAnotherSize) {
   const samples::Sample sample = samples::load("four_in_a_row");
   Follower follower(config_for(sample), sample.calibration.rig);
