@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <bit>
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/pool_memory.hpp>
 #include <cairn/image/gradient.hpp>
@@ -15,7 +14,6 @@
 #include <cstdint>
 #include <memory_resource>
 #include <numeric>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -48,18 +46,18 @@ Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const floa
   return sum;
 }
 
-/// Merges basins pairwise.
+/// Merges basins pairwise, by ascending key. No merge makes the key of a border smaller than both that it joins, so
+/// two regions that are each other's best neighbour stay so until they merge. Hence they are merged where chains of
+/// best neighbours end, which is near in the image and thus in memory, and ordered by key afterwards.
 class BasinFuser {
  public:
   BasinFuser(const Basins& basins, View<const std::uint16_t> edges, const Exec& exec)
       : memory_(exec.pool),
         links_(&memory_),
-        left_(basins.count),
         areas_(slot(basins.count)),
-        parents_(slot(basins.count)),
+        roots_(slot(basins.count)),
         links_of_(slot(basins.count), -1),
         common_(slot(basins.count), -1) {
-    std::iota(parents_.begin(), parents_.end(), 0);
     links_.reserve(3 * slot(basins.count));  // a planar graph has no more
     const int width = basins.labels.width();
     for (int y = 0; y < basins.labels.height(); ++y) areas_[index(basins.labels(width - 1, y))] += width;
@@ -72,74 +70,60 @@ class BasinFuser {
       ++link.length;
       link.edge_sum += std::max(edges(x, y), edges(x + dx, y + dy));
     });
-    std::pmr::vector<Entry> all(&memory_);
-    all.reserve(2 * links_.size());
-    for (std::int32_t i = 0; slot(i) < links_.size(); ++i)
-      all.push_back(links_[slot(i)].queued = entry_of(i));
-    queue_ = Queue({}, std::move(all));
+    for (std::size_t i = 0; i < areas_.size(); ++i) roots_[i] = std::sqrt(static_cast<double>(areas_[i]));
+    merges_.reserve(slot(basins.count));
+    merge();
   }
 
-  void until(int count) {
-    while (left_ > count && !queue_.empty()) {
-      const Entry next = queue_.top();
-      queue_.pop();
-      const Link& link = links_[slot(next.link())];
-      if (link.queued != next) continue;  // stale: queued again with another key, or gone
-      // Keys only grow as regions grow, so no entry is queued too late.
-      const Entry now = entry_of(next.link());
-      if (now == next) {
-        fuse(next.link());
-      } else {
-        queue(now);
-      }
-    }
-  }
-
-  /// The number of each basin's superpixel, in the order of their first basins; `count`: of superpixels.
+  /// The number of each basin's superpixel, in the order of their first basins, after all but `count` − 1 merges;
+  /// `count` becomes the number of superpixels.
   std::vector<RegionId> numbers(std::int32_t& count) {
-    std::vector<RegionId> numbers(parents_.size(), RegionId{-1});
+    const std::size_t basins = areas_.size();
+    const std::size_t made = basins - std::min(basins, slot(count));
+    if (made < merges_.size())
+      std::nth_element(merges_.begin(), merges_.begin() + static_cast<std::ptrdiff_t>(made), merges_.end());
+    std::vector<std::int32_t> parents(basins);
+    std::iota(parents.begin(), parents.end(), 0);
+    const auto root = [&](std::int32_t basin) {
+      while (parents[slot(basin)] != basin)
+        basin = parents[slot(basin)] = parents[slot(parents[slot(basin)])];
+      return basin;
+    };
+    for (std::size_t i = 0; i < std::min(made, merges_.size()); ++i) {
+      const std::int32_t p = root(merges_[i].a);
+      const std::int32_t q = root(merges_[i].b);
+      parents[slot(std::max(p, q))] = std::min(p, q);
+    }
+    std::vector<RegionId> numbers(basins);
     count = 0;
-    for (std::size_t basin = 0; basin < numbers.size(); ++basin) {
-      RegionId& of_root = numbers[slot(root(static_cast<std::int32_t>(basin)))];
-      // The root may come later than the first of its basins.
-      if (number(of_root) < 0) of_root = RegionId{count++};
-      numbers[basin] = of_root;
+    for (std::size_t basin = 0; basin < basins; ++basin) {
+      const std::size_t first = slot(root(static_cast<std::int32_t>(basin)));
+      numbers[basin] = first == basin ? RegionId{count++} : numbers[first];
     }
     return numbers;
   }
 
  private:
-  /// In the order of merging: by key, then by first occurrence. Integers are compared, without branches, because
-  /// the processor cannot predict which of two entries is later.
-  class Entry {
-   public:
-    Entry() = default;
-    Entry(double key, std::int32_t first, std::int32_t link)
-        : key_(std::bit_cast<std::uint64_t>(key)),  // ordered as the keys are, which are not negative
-          rest_((static_cast<std::uint64_t>(first) << 32U) | static_cast<std::uint32_t>(link)) {}
-    [[nodiscard]] std::int32_t link() const { return static_cast<std::int32_t>(rest_ & UINT32_MAX); }
-    friend bool operator==(const Entry&, const Entry&) = default;
-    bool operator<(const Entry& other) const {  // the greatest is at the top of the queue
-      return ((key_ > other.key_) | ((key_ == other.key_) & (rest_ > other.rest_))) != 0;
-    }
-
-   private:
-    std::uint64_t key_ = 0;
-    std::uint64_t rest_ = 0;
-  };
   struct Link {
     std::int32_t a = 0;
     std::int32_t b = 0;
     // The next link in the list of a, and of b; −1 = none.
     std::int32_t next_of_a = -1;
     std::int32_t next_of_b = -1;
-    std::int32_t first = 0;  // rank in raster order of first occurrence
-    std::int32_t length = 0;
+    std::int32_t first = 0;   // rank in raster order of first occurrence
+    std::int32_t length = 0;  // 0 = the link no longer exists
     std::int64_t edge_sum = 0;
-    Entry queued{};  // its valid entry in the queue; Entry() = the link no longer exists
-    [[nodiscard]] bool is_gone() const { return queued == Entry(); }
     [[nodiscard]] std::int32_t other(std::int32_t end) const { return a == end ? b : a; }
     [[nodiscard]] std::int32_t& next(std::int32_t end) { return a == end ? next_of_a : next_of_b; }
+  };
+  struct Merge {
+    double key;
+    std::int32_t first;
+    std::int32_t a;  // regions are numbered like one of their basins
+    std::int32_t b;
+    bool operator<(const Merge& other) const {
+      return key < other.key || (key == other.key && first < other.first);
+    }
   };
 
   Link& link_between(std::int32_t a, std::int32_t b) {
@@ -152,23 +136,51 @@ class BasinFuser {
     return links_.back();
   }
 
-  std::int32_t root(std::int32_t basin) {
-    while (parents_[slot(basin)] != basin) {
-      parents_[slot(basin)] = parents_[slot(parents_[slot(basin)])];
-      basin = parents_[slot(basin)];
+  /// The best link of a region, −1 if it has none; drops those that no longer exist from its list.
+  std::int32_t best_of(std::int32_t region, double& least) {
+    std::int32_t best = -1;
+    std::int32_t* end = &links_of_[slot(region)];
+    const double root = roots_[slot(region)];
+    while (*end >= 0) {
+      Link& link = links_[slot(*end)];
+      if (link.length == 0) {
+        *end = link.next(region);
+        continue;
+      }
+      const double edge = static_cast<double>(link.edge_sum) / static_cast<double>(link.length);
+      const double key = (edge + kEvenWithoutEdge) * std::min(root, roots_[slot(link.other(region))]);
+      if (best < 0 || key < least || (key == least && link.first < links_[slot(best)].first)) {
+        best = *end;
+        least = key;
+      }
+      end = &link.next(region);
     }
-    return basin;
+    return best;
   }
 
-  [[nodiscard]] Entry entry_of(std::int32_t i) const {
-    const Link& link = links_[slot(i)];
-    const auto area = static_cast<double>(std::min(areas_[slot(link.a)], areas_[slot(link.b)]));
-    const double edge = static_cast<double>(link.edge_sum) / static_cast<double>(link.length);
-    return {(edge + kEvenWithoutEdge) * std::sqrt(area), link.first, i};
-  }
-  void queue(const Entry& entry) {
-    links_[slot(entry.link())].queued = entry;
-    queue_.push(entry);
+  void merge() {
+    std::vector<std::int32_t> chain;
+    for (std::int32_t start = 0; slot(start) < areas_.size(); ++start) {
+      if (areas_[slot(start)] == 0) continue;
+      chain.push_back(start);
+      while (!chain.empty()) {
+        const std::int32_t here = chain.back();
+        double key = 0;
+        const std::int32_t best = best_of(here, key);
+        if (best < 0) {  // everything is one region
+          chain.clear();
+          break;
+        }
+        const std::int32_t there = links_[slot(best)].other(here);
+        if (chain.size() < 2 || chain[chain.size() - 2] != there) {
+          chain.push_back(there);
+          continue;
+        }
+        chain.resize(chain.size() - 2);
+        merges_.push_back({key, links_[slot(best)].first, here, there});
+        fuse(best);
+      }
+    }
   }
 
   void fuse(std::int32_t across) {
@@ -176,14 +188,13 @@ class BasinFuser {
     std::int32_t lost = links_[slot(across)].b;
     if (areas_[slot(kept)] < areas_[slot(lost)])
       std::swap(kept, lost);  // the smaller one usually has fewer links
-    links_[slot(across)].queued = {};
-    parents_[slot(lost)] = kept;
-    areas_[slot(kept)] += areas_[slot(lost)];
-    --left_;
+    links_[slot(across)].length = 0;
+    areas_[slot(kept)] += std::exchange(areas_[slot(lost)], 0);
+    roots_[slot(kept)] = std::sqrt(static_cast<double>(areas_[slot(kept)]));
     std::int32_t* end = &links_of_[slot(kept)];
     while (*end >= 0) {
       Link& link = links_[slot(*end)];
-      if (link.is_gone()) {
+      if (link.length == 0) {
         *end = link.next(kept);
       } else {
         common_[slot(link.other(kept))] = *end;
@@ -194,18 +205,13 @@ class BasinFuser {
       const std::int32_t i = next;
       Link& link = links_[slot(i)];
       next = link.next(lost);
-      if (link.is_gone()) continue;
+      if (link.length == 0) continue;
       const std::int32_t known = common_[slot(link.other(lost))];
       if (known >= 0) {
         Link& both = links_[slot(known)];
         both.first = std::min(both.first, link.first);
-        both.length += link.length;
+        both.length += std::exchange(link.length, 0);
         both.edge_sum += link.edge_sum;
-        link.queued = {};
-        // An entry that is too early is queued again when its turn comes; only one that is too late must be
-        // replaced.
-        const Entry now = entry_of(known);
-        if (both.queued < now) queue(now);
       } else {
         (link.a == lost ? link.a : link.b) = kept;
         link.next(kept) = std::exchange(links_of_[slot(kept)], i);
@@ -215,16 +221,13 @@ class BasinFuser {
       common_[slot(links_[slot(i)].other(kept))] = -1;
   }
 
-  using Queue = std::priority_queue<Entry, std::pmr::vector<Entry>>;
-
   PoolMemory memory_;
   std::pmr::vector<Link> links_;
-  int left_;
-  std::vector<std::int64_t> areas_;
-  std::vector<std::int32_t> parents_;
-  std::vector<std::int32_t> links_of_;  // the first of each basin's list; some of its links may be gone
-  std::vector<std::int32_t> common_;    // during a merge: the link with the basin that is kept; −1 = none
-  Queue queue_{{}, std::pmr::vector<Entry>(&memory_)};
+  std::vector<std::int64_t> areas_;     // 0 = merged into another region
+  std::vector<double> roots_;           // of the areas
+  std::vector<std::int32_t> links_of_;  // the first of each region's list; some of its links may be gone
+  std::vector<std::int32_t> common_;    // during a merge: the link with the region that is kept; −1 = none
+  std::vector<Merge> merges_;
 };
 
 }  // namespace
@@ -238,8 +241,7 @@ Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> dispar
   const Image<std::uint16_t> with_depth = with_steps(edges, disparity_px, noise_sigma, exec);
   Basins basins = watershed(with_depth, exec);
   BasinFuser fusing(basins, with_depth, exec);
-  fusing.until(config.count);
-  std::int32_t count = 0;
+  std::int32_t count = config.count;
   const std::vector<RegionId> numbers = fusing.numbers(count);
   for (int y = 0; y < edges.height(); ++y) {
     RegionId* const row = basins.labels.row(y);
