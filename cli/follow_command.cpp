@@ -131,7 +131,7 @@ int follow(const RunOptions& options) {
   for (const LandmarkEvent& change : changes_of(totals.events)) std::cerr << event_line(change) << "\n";
   if (!options.sensors.map.empty()) std::cerr << no_landmark_text(runner.marked());
   std::cerr << sinks.summary();
-  return is_interrupted() ? kInterrupted : exit_code_of(*source);
+  return is_interrupted() ? kInterrupted : sinks.exit_code(*source);
 }
 
 }  // namespace

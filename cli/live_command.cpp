@@ -134,7 +134,7 @@ int live_command(LiveCommandOptions options) {
   sinks.begin();
   const live::LiveSummary summary = runner.run();
   std::cerr << remarks_text(*source) << summary_text(summary) << sinks.summary();
-  return exit_code_of(*source);
+  return sinks.exit_code(*source);
 }
 
 }  // namespace

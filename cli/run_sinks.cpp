@@ -60,4 +60,8 @@ std::string RunSinks::summary() const {
   return text;
 }
 
+int RunSinks::exit_code(const input::Sequence& source) const {
+  return recorder_->status().trouble.empty() ? exit_code_of(source) : 3;
+}
+
 }  // namespace cairn::cli

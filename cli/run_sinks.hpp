@@ -46,6 +46,8 @@ class RunSinks {
   [[nodiscard]] const RunTotals& totals() const { return files_->totals(); }
   /// A line for each sink that has one.
   [[nodiscard]] std::string summary() const;
+  /// exit_code_of() the source; 3 if the recording has stopped early.
+  [[nodiscard]] int exit_code(const input::Sequence& source) const;
 
  private:
   void add(std::unique_ptr<live::Sink> sink);

@@ -255,10 +255,15 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
       return open_pair(source.substr(0, comma), source.substr(comma + 1), options, pool);
     if (is_pattern(source))
       throw Error(source + ": is one pattern, expected two: left_%04d.png,right_%04d.png");
-    throw Error(source + ": not found, expected a folder of frames, a video, or LEFT,RIGHT");
+    throw Error(
+        source +
+        ": not found, expected a folder of frames, a recording (.mcap), a video, LEFT,RIGHT, or a camera or topics "
+        "(v4l2:, gst:, rtsp://, ros2:)");
   }
   if (!io::is_folder(source)) {
     refuse_other_recording(source);
+    if (fs::is_character_file(source))
+      throw Error(source + ": is a device, expected v4l2:" + source + " for a camera");
     if (options.layout.empty()) {
       throw Error(source +
                   ": is one file, expected --layout side_by_side or top_bottom for a video with both images, "

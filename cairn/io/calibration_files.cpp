@@ -440,7 +440,7 @@ std::optional<std::string> known_but_unread(std::string_view text) {
         text.find(known.marks[1]) == std::string_view::npos)
       continue;
     return std::string("is a calibration of ") + known.program + ", which is not read; write " +
-           known.conversion + " (docs/formats.md, \"Calibrations\")";
+           known.conversion + " (docs/formats.md, \"Calibrations in\")";
   }
   return std::nullopt;
 }

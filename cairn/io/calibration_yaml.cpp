@@ -604,9 +604,10 @@ Statement read_own(const YAML::Node& map) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
     if (std::find(names.begin(), names.end(), key) != names.end()) continue;
     const std::string close = nearest(key, names);
+    std::string all;
+    for (const std::string& name : names) all += " " + name;
     throw Error("has the unknown key " + excerpt(key) +
-                (close.empty() ? ", expected focal_px cx_px cy_px baseline_m doffs_px width height ndisp"
-                               : ", did you mean '" + close + "'?"));
+                (close.empty() ? ", expected" + all : ", did you mean '" + close + "'?"));
   }
   return says;
 }

@@ -256,8 +256,9 @@ std::string Recorder::summary() const {
   const RecorderStatus now = status();
   if (now.path.empty()) return {};
   std::array<char, 160> numbers{};
-  std::snprintf(numbers.data(), numbers.size(), "%llu frames, %.1f MB",
-                static_cast<unsigned long long>(now.frames), static_cast<double>(now.bytes) * 1e-6);
+  std::snprintf(numbers.data(), numbers.size(), "%llu frame%s, %.1f MB",
+                static_cast<unsigned long long>(now.frames), now.frames == 1 ? "" : "s",
+                static_cast<double>(now.bytes) * 1e-6);
   std::string text = "recorded " + now.path + ": " + numbers.data();
   if (now.skipped > 0) text += ", " + std::to_string(now.skipped) + " skipped because the disk was too slow";
   if (!now.trouble.empty()) text += "; stopped: " + now.trouble;

@@ -158,38 +158,32 @@ class BasinFuser {
     return best;
   }
 
+  /// Down to one region: the image is connected.
   void merge() {
-    std::vector<std::int32_t> chain;
-    for (std::int32_t start = 0; slot(start) < areas_.size(); ++start) {
-      if (areas_[slot(start)] == 0) continue;
-      chain.push_back(start);
-      while (!chain.empty()) {
-        const std::int32_t here = chain.back();
-        double key = 0;
-        const std::int32_t best = best_of(here, key);
-        if (best < 0) {  // everything is one region
-          chain.clear();
-          break;
-        }
-        const std::int32_t there = links_[slot(best)].other(here);
-        if (chain.size() < 2 || chain[chain.size() - 2] != there) {
-          chain.push_back(there);
-          continue;
-        }
-        chain.resize(chain.size() - 2);
-        merges_.push_back({key, links_[slot(best)].first, here, there});
-        fuse(best);
+    std::vector<std::int32_t> chain{0};
+    double key = 0;
+    for (std::int32_t best = 0; (best = best_of(chain.back(), key)) >= 0;) {
+      const std::int32_t here = chain.back();
+      const std::int32_t there = links_[slot(best)].other(here);
+      if (chain.size() < 2 || chain[chain.size() - 2] != there) {
+        chain.push_back(there);
+        continue;
       }
+      chain.resize(chain.size() - 2);
+      merges_.push_back({key, links_[slot(best)].first, here, there});
+      const std::int32_t kept = fuse(best);
+      if (chain.empty()) chain.push_back(kept);
     }
   }
 
-  void fuse(std::int32_t across) {
+  /// Returns the number of the merged region.
+  std::int32_t fuse(std::int32_t across) {
     std::int32_t kept = links_[slot(across)].a;
     std::int32_t lost = links_[slot(across)].b;
     if (areas_[slot(kept)] < areas_[slot(lost)])
       std::swap(kept, lost);  // the smaller one usually has fewer links
     links_[slot(across)].length = 0;
-    areas_[slot(kept)] += std::exchange(areas_[slot(lost)], 0);
+    areas_[slot(kept)] += areas_[slot(lost)];
     roots_[slot(kept)] = std::sqrt(static_cast<double>(areas_[slot(kept)]));
     std::int32_t* end = &links_of_[slot(kept)];
     while (*end >= 0) {
@@ -219,6 +213,7 @@ class BasinFuser {
     }
     for (std::int32_t i = links_of_[slot(kept)]; i >= 0; i = links_[slot(i)].next(kept))
       common_[slot(links_[slot(i)].other(kept))] = -1;
+    return kept;
   }
 
   PoolMemory memory_;

@@ -143,7 +143,7 @@ TEST_F(LiveRecord, AFullFileEndsTheRecordingButNotTheRun) {
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
   const Outcome outcome = record({"--json-lines", "--record-what", "all"});
   setrlimit(RLIMIT_FSIZE, &before);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 6);
   EXPECT_NE(outcome.err.find("cairn: recording stopped: " + path("run.mcap") +
                              ": can no longer be written: File too large\n"),
