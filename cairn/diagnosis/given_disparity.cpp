@@ -162,9 +162,10 @@ std::vector<Reading> readings_by_value(const Comparison& points, const std::opti
 
 std::optional<Finding> check_given_disparity(View<const float> disparity_px, const StereoPair& pair,
                                              const std::optional<StereoRig>& rig, const Exec& exec) {
-  if (disparity_px.size() != pair.size())
+  if (disparity_px.size() != pair.size()) {
     throw Error("the disparity map is " + text(disparity_px.size()) + ", the images are " +
                 text(pair.size()));
+  }
   const Correspondences found = find_correspondences(pair, exec);
   const std::vector<Correspondence> points = agreeing_ones(found).list;
   if (static_cast<double>(points.size()) < kMinAgreeing * static_cast<double>(found.list.size()))
