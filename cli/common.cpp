@@ -272,6 +272,11 @@ const fs::path& right_of(const io::FrameFiles& files) {
               (files.expected_right.empty() ? "" : ", expected " + files.expected_right.string()));
 }
 
+io::LoadedPair load_images(const io::FrameFiles& files, const Pool& pool) {
+  (void)right_of(files);
+  return io::load_pair(files, pool);
+}
+
 namespace {
 
 DisparityMap load_given(const fs::path& path, Size size, const fs::path& left, const Exec& exec) {
@@ -298,8 +303,7 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
     if (!map) refuse_without_map(files, options.disparity);
     frame.given = load_given(*map, frame.left.gray.size(), files.left, exec);
   } else {
-    (void)right_of(files);
-    io::LoadedPair pair = io::load_pair(files, exec.pool);
+    io::LoadedPair pair = load_images(files, exec.pool);
     frame.left = std::move(pair.left);
     frame.right = std::move(pair.right.gray);
   }

@@ -78,6 +78,8 @@ std::vector<std::optional<std::int64_t>> stamps_of(const InputOptions& options,
                                                    const std::vector<io::FrameFiles>& frames);
 /// Throws Error if the frame has no right image.
 const std::filesystem::path& right_of(const io::FrameFiles& files);
+/// The images of a frame. Throws Error like right_of().
+io::LoadedPair load_images(const io::FrameFiles& files, const Pool& pool = {});
 
 /// A frame with everything needed to process it.
 struct LoadedFrame {

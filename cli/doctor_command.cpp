@@ -177,8 +177,7 @@ std::optional<Finding> find_sizes(const std::vector<ExaminedPair>& pairs) {
 /// nullopt if it is unusable, which ends the consecutive pairs.
 std::optional<io::LoadedPair> load_if_possible(const io::FrameFiles& files, const Exec& exec) {
   try {
-    (void)right_of(files);
-    return io::load_pair(files, exec.pool);
+    return load_images(files, exec.pool);
   } catch (const Error&) {
     return std::nullopt;
   }

@@ -45,15 +45,10 @@ void save_stamps(const fs::path& path, const std::vector<std::optional<std::int6
   io::write_file(path, text);
 }
 
-io::LoadedPair raw_pair(const io::FrameFiles& files) {
-  (void)right_of(files);
-  return io::load_pair(files);
-}
-
 int rectify(const RectifyOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   const io::Rectifier rectify_pair(io::load_raw_calibration(
-      options.input.calib, [&] { return raw_pair(frames.front()).left.gray.size(); }));
+      options.input.calib, [&] { return load_images(frames.front()).left.gray.size(); }));
   const auto folder_of = [&](const io::FrameFiles& files) {
     return frames.size() == 1 ? fs::path(options.output) : options.output / fs::path(files.name);
   };
@@ -64,7 +59,7 @@ int rectify(const RectifyOptions& options) {
   const Progress progress(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.at(i, frames[i].name);
-    const io::LoadedPair raw = raw_pair(frames[i]);
+    const io::LoadedPair raw = load_images(frames[i]);
     io::LoadedPair rectified;
     try {
       rectified = rectify_pair(raw);

@@ -59,14 +59,14 @@ Json build_json(const Exec& exec) {
 
 /// The names of all keys of the file, without their values, which may be serial numbers or addresses.
 Json keys_of(const fs::path& path) {
-  constexpr std::size_t kMost = 200;
+  constexpr std::size_t kMaxKeys = 200;
   Json keys = Json::array();
   std::set<std::string> known;
   std::ifstream file(path, std::ios::binary);
   std::string line;
   static const std::regex key(
       R"re(^[\s{\-]*(?:<(\w[\w.\-]{0,39})[^>]*>|"?([A-Za-z_][\w.\-]{0,39})"?\s*[:=]).*)re");
-  while (keys.size() < kMost && std::getline(file, line)) {
+  while (keys.size() < kMaxKeys && std::getline(file, line)) {
     line.resize(std::min<std::size_t>(line.size(), 200));
     line.erase(std::remove(line.begin(), line.end(), '\r'), line.end());
     std::smatch match;

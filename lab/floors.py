@@ -36,9 +36,12 @@ def calibration_of(folder):
     return None
 
 
-def plane_of(left, right, rig):
-    """(ground, pitch and roll in degrees, height in baselines) as found; None without a floor."""
-    ground = cairn.segment(left, right, rig).ground
+def plane_of(left, right, calibration):
+    """(ground, roll in degrees, height in baselines) as found; None without a floor."""
+    rig = calibration.rig if calibration else None
+    # Not the calibration itself: cut images have another size.
+    known = calibration.num_disparities if calibration else None
+    ground = cairn.segment(left, right, rig, match={"num_disparities": known} if known else {}).ground
     if ground.plane is None:
         return None
     height, width = left.shape[:2]
@@ -98,13 +101,12 @@ def main():
                 continue
             left, right = cairn.load_pair(folder / "left.png", folder / "right.png")
             calibration = calibration_of(folder)
-            rig = calibration.rig if calibration else None
             if name == "above the floor":
                 rows = rows_above(folder, left.shape)
                 if rows < MIN_ROWS or folder.name in TABLES:
                     continue
                 left, right = left[:rows], right[:rows]
-            found = plane_of(left, right, rig)
+            found = plane_of(left, right, calibration)
             if found is None:
                 counts[2] += 1
                 continue

@@ -98,11 +98,11 @@ Exposure measure_exposure(View<const Gray> image) {
     for (int x = 0; x < image.width(); ++x) ++counts[row[x]];
   }
   std::int64_t area = image.size().area();
-  constexpr double kLeastBorder = 0.02;
-  constexpr double kMostBorder = 0.7;
+  constexpr double kMinBorder = 0.02;
+  constexpr double kMaxBorder = 0.7;
   const double black = static_cast<double>(counts[0] + counts[1]) / static_cast<double>(area);
   float border = 0;
-  if (black >= kLeastBorder) {
+  if (black >= kMinBorder) {
     const Border sides = border_of(image);
     std::array<std::int64_t, 2> in_border{};  // by level
     for (int y = 0; y < image.height(); ++y) {
@@ -112,7 +112,7 @@ Exposure measure_exposure(View<const Gray> image) {
     }
     const std::int64_t pixels = in_border[0] + in_border[1];
     const double share = static_cast<double>(pixels) / static_cast<double>(area);
-    if (share >= kLeastBorder && share <= kMostBorder) {
+    if (share >= kMinBorder && share <= kMaxBorder) {
       border = static_cast<float>(share);
       counts[0] -= in_border[0];
       counts[1] -= in_border[1];

@@ -26,7 +26,7 @@ constexpr int kOnlyThere = 4;         // … or at these points, and nowhere wor
 constexpr double kFarBetter = 0.25;   // … and certainly wrong if it fits by this more
 
 /// A disparity of the map and that of the images, at one point; NaN: the map has a hole.
-struct Compared {
+struct ComparedPoint {
   double given = 0;
   double found = 0;
   [[nodiscard]] bool is_known() const { return !std::isnan(given); }
@@ -36,15 +36,16 @@ struct Compared {
     return std::abs(given - found) <= std::max(kNear, kShare * std::abs(found));
   }
 };
-using Comparison = std::vector<Compared>;  // of the same points in each reading
+using Comparison = std::vector<ComparedPoint>;  // of the same points in each reading
 
 int count_known(const Comparison& points) {
   return static_cast<int>(
-      std::count_if(points.begin(), points.end(), [](const Compared& p) { return p.is_known(); }));
+      std::count_if(points.begin(), points.end(), [](const ComparedPoint& p) { return p.is_known(); }));
 }
 
 double share_that_fits(const Comparison& points) {
-  const auto count = std::count_if(points.begin(), points.end(), [](const Compared& p) { return p.fits(); });
+  const auto count =
+      std::count_if(points.begin(), points.end(), [](const ComparedPoint& p) { return p.fits(); });
   return static_cast<double>(count) / std::max(1, count_known(points));
 }
 
@@ -52,11 +53,11 @@ double share_that_fits(const Comparison& points) {
 double chance(const Comparison& points) {
   std::int64_t pairs = 0;
   std::int64_t fitting = 0;
-  for (const Compared& a : points) {
-    for (const Compared& b : points) {
+  for (const ComparedPoint& a : points) {
+    for (const ComparedPoint& b : points) {
       if (!a.is_known() || !b.is_known()) continue;
       ++pairs;
-      fitting += Compared{a.given, b.found}.fits() ? 1 : 0;
+      fitting += ComparedPoint{a.given, b.found}.fits() ? 1 : 0;
     }
   }
   return static_cast<double>(fitting) / static_cast<double>(std::max<std::int64_t>(1, pairs));
@@ -85,7 +86,7 @@ Comparison compared(View<const float> map, const std::vector<Correspondence>& po
 /// The points with their given value changed.
 template <class Change>
 Comparison changed(Comparison points, Change change) {
-  for (Compared& p : points) p.given = change(p.given);
+  for (ComparedPoint& p : points) p.given = change(p.given);
   return points;
 }
 
@@ -118,7 +119,7 @@ std::vector<Reading> readings_by_value(const Comparison& points, const std::opti
   std::vector<double> products;
   std::vector<double> ratios;
   const double doffs = rig ? static_cast<double>(rig->doffs_px) : 0.0;
-  for (const Compared& p : points) {
+  for (const ComparedPoint& p : points) {
     if (!p.is_known() || std::abs(p.found) < 1) continue;
     products.push_back(p.given * (p.found + doffs));
     ratios.push_back(p.given / p.found);

@@ -81,22 +81,14 @@ SourceCalibration open_calibration(const SourceOptions& options, const std::opti
 }
 
 bool FrameWatch::continues(Stamp stamp, const std::string& name, std::vector<SourceRemark>& remarks) const {
-  if (!before_) return true;
-  switch (clock_step(before_->stamp, stamp)) {
-    case ClockStep::forward:
-      break;
-    case ClockStep::repeated:
-      remark(remarks,
-             {"frame with a stamp that is not later than the one before", 1,
-              name + " (" + stamp_text(stamp) + " after " + stamp_text(before_->stamp) + ")", true, false});
-      return false;
-    case ClockStep::set_back:
-      remark(remarks,
-             {"clock set back, a new run begins", 1,
-              name + " (" + stamp_text(stamp) + " after " + stamp_text(before_->stamp) + ")", false, false});
-      break;
-  }
-  return true;
+  const ClockStep step = before_ ? clock_step(before_->stamp, stamp) : ClockStep::forward;
+  if (step == ClockStep::forward) return true;
+  const bool is_left_out = step == ClockStep::repeated;
+  remark(remarks, {is_left_out ? "frame with a stamp that is not later than the one before"
+                               : "clock set back, a new run begins",
+                   1, name + " (" + stamp_text(stamp) + " after " + stamp_text(before_->stamp) + ")",
+                   is_left_out, false});
+  return !is_left_out;
 }
 
 void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks) {

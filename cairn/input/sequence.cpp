@@ -22,11 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-io::LoadedPair load_images(const ListedFrame& files, const Pool& pool = {}, int least_bits = 8) {
-  if (files.layout != io::Layout::one) return io::load_both(files.left, files.layout, pool, least_bits);
-  return io::load_pair(files.left, files.right, pool, least_bits);
-}
-
 /// Whether each of the images can be read by itself.
 bool are_readable(const ListedFrame& files) {
   try {
@@ -56,8 +51,9 @@ class FileSequence : public SourceSequence {
     const ListedFrame& first = list_.frames.front();
     const std::optional<fs::path> found = first.calib ? first.calib : list_.calib;
     each_has_own_ = options.calib.empty() && first.calib && !list_.is_raw && !options.rectify;
-    calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw,
-                                    [&] { return load_images(first).left.gray.size(); });
+    calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw, [&] {
+      return io::load_pair(first.left, first.right, first.layout).left.gray.size();
+    });
     if (each_has_own_) calib_bytes_ = io::read_file(calibration_.path, io::kMaxTextBytes);
     first_ = load(first);
     calibration_.suit(first_->left.gray.size());
@@ -87,7 +83,7 @@ class FileSequence : public SourceSequence {
 
   SequenceFrame load(const ListedFrame& files) {
     if (each_has_own_) check_calibration(files);
-    io::LoadedPair pair = load_images(files, pool_, bits_);
+    io::LoadedPair pair = io::load_pair(files.left, files.right, files.layout, pool_, bits_);
     // Raw images are compared by their own size.
     if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
       throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +

@@ -280,8 +280,7 @@ bool is_picture(const fs::path& path) {
 }
 
 LoadedPair load_pair(const FrameFiles& files, const Pool& pool, int least_bits) {
-  if (files.layout != Layout::one) return load_both(files.left, files.layout, pool, least_bits);
-  return load_pair(files.left, files.right.value(), pool, least_bits);
+  return load_pair(files.left, files.right.value(), files.layout, pool, least_bits);
 }
 
 std::vector<fs::path> images_in(const fs::path& folder) {

@@ -72,17 +72,16 @@ LoadedImage picture_of(const Raster& raster, int depth, const Pool& pool) {
                                 : to_picture<std::uint16_t>(raster, depth, pool);
 }
 
-/// The part of this size whose first pixel is (x, y).
-Raster part_of(const Raster& raster, int x, int y, Size size) {
+Raster part_of(const Raster& raster, const Rect& place) {
   Raster part = raster;
-  part.size = size;
+  part.size = {place.width, place.height};
   const auto pixel = static_cast<std::size_t>(raster.channels * raster.bytes_each);
   const std::size_t from = static_cast<std::size_t>(raster.size.width) * pixel;
-  const std::size_t to = static_cast<std::size_t>(size.width) * pixel;
-  part.bytes.resize(to * static_cast<std::size_t>(size.height));
-  for (std::size_t row = 0; row < static_cast<std::size_t>(size.height); ++row) {
-    std::copy_n(raster.bytes.data() + (static_cast<std::size_t>(y) + row) * from +
-                    static_cast<std::size_t>(x) * pixel,
+  const std::size_t to = static_cast<std::size_t>(place.width) * pixel;
+  part.bytes.resize(to * static_cast<std::size_t>(place.height));
+  for (std::size_t row = 0; row < static_cast<std::size_t>(place.height); ++row) {
+    std::copy_n(raster.bytes.data() + (static_cast<std::size_t>(place.y) + row) * from +
+                    static_cast<std::size_t>(place.x) * pixel,
                 to, part.bytes.data() + row * to);
   }
   return part;
@@ -134,25 +133,27 @@ Layout layout_of(std::string_view name) {
   throw Error("--layout: found " + std::string(name) + ", expected side_by_side or top_bottom");
 }
 
-Size half_of(Size both, Layout layout) {
+std::array<Rect, 2> halves_of(Size both, Layout layout) {
   const bool side_by_side = layout == Layout::side_by_side;
   if ((side_by_side ? both.width : both.height) % 2 != 0) {
     throw Error("is " + text(both) + ", expected an even " +
                 (side_by_side ? "width with --layout side_by_side" : "height with --layout top_bottom"));
   }
-  return side_by_side ? Size{both.width / 2, both.height} : Size{both.width, both.height / 2};
+  const int width = side_by_side ? both.width / 2 : both.width;
+  const int height = side_by_side ? both.height : both.height / 2;
+  return {Rect{0, 0, width, height},
+          Rect{side_by_side ? width : 0, side_by_side ? 0 : height, width, height}};
 }
 
-LoadedPair load_both(const fs::path& path, Layout layout, const Pool& pool, int least_bits) {
-  const Raster both = read_raster(path, Palette::colours);
+LoadedPair load_pair(const fs::path& left, const fs::path& right, Layout layout, const Pool& pool,
+                     int least_bits) {
+  if (layout == Layout::one) return load_pair(left, right, pool, least_bits);
+  const Raster both = read_raster(left, Palette::colours);
   try {
-    const Size half = half_of(both.size, layout);
-    const bool side_by_side = layout == Layout::side_by_side;
-    return pair_of(part_of(both, 0, 0, half),
-                   part_of(both, side_by_side ? half.width : 0, side_by_side ? 0 : half.height, half), pool,
-                   least_bits);
+    const auto halves = halves_of(both.size, layout);
+    return pair_of(part_of(both, halves[0]), part_of(both, halves[1]), pool, least_bits);
   } catch (const Error& error) {
-    throw Error(path.string() + ": " + error.what());
+    throw Error(left.string() + ": " + error.what());
   }
 }
 

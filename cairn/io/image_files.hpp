@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <array>
+#include <cairn/core/geometry.hpp>
 #include <cairn/core/image.hpp>
 #include <cairn/objects/obstacles.hpp>
 #include <cairn/stereo/reject.hpp>
@@ -48,12 +50,12 @@ enum class Layout : std::uint8_t {
 };
 /// Throws Error for other names. Empty: side_by_side.
 Layout layout_of(std::string_view name);
-/// The size of each of the two. Throws Error (without a file name) if the side to be halved is odd.
-Size half_of(Size both, Layout layout);
+/// Where the left and the right image are. Throws Error (without a file name) if the side to be halved is odd.
+std::array<Rect, 2> halves_of(Size both, Layout layout);
 
-/// Reads a file that holds both images; they are reduced as by load_pair(). Throws Error also if it cannot be halved.
-LoadedPair load_both(const std::filesystem::path& path, Layout layout, const Pool& pool = {},
-                     int least_bits = 8);
+/// The same for two images in one file, `left`; with Layout::one, in two.
+LoadedPair load_pair(const std::filesystem::path& left, const std::filesystem::path& right, Layout layout,
+                     const Pool& pool = {}, int least_bits = 8);
 
 /// The grey of colours, (77 R + 150 G + 29 B + 128) >> 8.
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool = {});

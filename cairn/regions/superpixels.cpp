@@ -72,7 +72,7 @@ class BasinFuser {
     });
     for (std::size_t i = 0; i < areas_.size(); ++i) roots_[i] = std::sqrt(static_cast<double>(areas_[i]));
     merges_.reserve(slot(basins.count));
-    merge();
+    if (basins.count > 0) merge();
   }
 
   /// The number of each basin's superpixel, in the order of their first basins, after all but `count` − 1 merges;
@@ -89,7 +89,7 @@ class BasinFuser {
         basin = parents[slot(basin)] = parents[slot(parents[slot(basin)])];
       return basin;
     };
-    for (std::size_t i = 0; i < std::min(made, merges_.size()); ++i) {
+    for (std::size_t i = 0; i < made; ++i) {
       const std::int32_t p = root(merges_[i].a);
       const std::int32_t q = root(merges_[i].b);
       parents[slot(std::max(p, q))] = std::min(p, q);

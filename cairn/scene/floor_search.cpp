@@ -41,6 +41,7 @@ constexpr double kMinSurplus = 6;         // standard deviations: of matches on 
 constexpr int kMinSeen = 3;               // originals seen for each one that is missing, of a mirror
 constexpr float kNearest = 1.25F;  // times the nearest match: the nearest a floor may be at the lower border
 constexpr float kApart = 4;        // px; least distance from an original
+constexpr int kLowerSurface = 3;   // a plane below the best counts with a third of its score
 
 // Fitted to planes that are a floor and planes that are none (lab/floors.py; docs/stages/ground.md, "Plausible
 // floors"): the log odds of a floor.
@@ -51,7 +52,6 @@ constexpr double kOddsOfHeight = -5.6;  // per factor e above the usual heights
 constexpr double kOddsOfDepth = -4.1;   // per factor e below them
 constexpr double kUsuallyHighest = 40;  // baselines
 constexpr double kUsuallyLowest = 1.5;  // baselines
-constexpr int kLowerSurface = 3;        // a plane below the best counts with a third of its score
 
 // The effort of the search: one to three milliseconds, four more if the left image is used.
 constexpr std::size_t kSamples = 4096;
@@ -851,8 +851,8 @@ Ground find_floor(View<const float> disparity_px, const FloorCues& cues, const s
   } else if (contrast.is_known()) {
     best = mirror(list, seen, contrast.view(), found.walls, camera, run);
   }
-  if (!best && found.has_unlikely) return refused(Refusal::unlikely);
   if (!best) {
+    if (found.has_unlikely) return refused(Refusal::unlikely);
     return refused(!found.walls.empty() || faces_a_wall(seen.points, camera, run) ? Refusal::implausible
                                                                                   : Refusal::no_plane);
   }

@@ -67,21 +67,18 @@ for tag in "v$version" "$version"; do
   refuses "version $version is already tagged ($tag)"
   in_repo tag --delete "$tag" >/dev/null
 done
-sed -i "s/^## \[$version\].*/## [Unreleased]/" "$repo/CHANGELOG.md" && commit unreleased
-refuses "CHANGELOG.md: no section '## [$version] - YEAR-MONTH-DAY'"
-again
-sed -i '/A line/d' "$repo/CHANGELOG.md" && commit empty
-refuses "CHANGELOG.md: the section of $version is empty"
-again
-sed -i 's|<version>.*</version>|<version>9.9.9</version>|' "$repo/ros2/package.xml" && commit version
-refuses "ros2/package.xml: found version '9.9.9', expected $version"
-again
-sed -i 's|^version: .*|version: 9.9.9|' "$repo/CITATION.cff" && commit version
-refuses "CITATION.cff: found version '9.9.9', expected $version"
-again
-sed -i 's|find_package(cairn [0-9.]*|find_package(cairn 9.9|' "$repo/tests/consumer/CMakeLists.txt" && commit version
-refuses "tests/consumer/CMakeLists.txt: found version '9.9', expected ${version%.*}"
-again
+refuses_with() {  # FILE SED_SCRIPT WORDS: with this edit committed
+  sed -i "$2" "$repo/$1" && commit edit
+  refuses "$3"
+  again
+}
+refuses_with CHANGELOG.md "s/^## \[$version\].*/## [Unreleased]/" "CHANGELOG.md: no section '## [$version] - YEAR-MONTH-DAY'"
+refuses_with CHANGELOG.md '/A line/d' "CHANGELOG.md: the section of $version is empty"
+refuses_with ros2/package.xml 's|<version>.*</version>|<version>9.9.9</version>|' \
+  "ros2/package.xml: found version '9.9.9', expected $version"
+refuses_with CITATION.cff 's|^version: .*|version: 9.9.9|' "CITATION.cff: found version '9.9.9', expected $version"
+refuses_with tests/consumer/CMakeLists.txt 's|find_package(cairn [0-9.]*|find_package(cairn 9.9|' \
+  "tests/consumer/CMakeLists.txt: found version '9.9', expected ${version%.*}"
 for command in test package; do
   echo $command >"$repo/dev.fails" && commit fails
   refuses "./dev $command failed"

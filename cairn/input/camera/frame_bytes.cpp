@@ -158,13 +158,11 @@ TwoFrames halves_of(const FrameBytes& bytes, Layout layout) {
                 " that is a multiple of " + std::to_string(parts) + " for two images " +
                 (side_by_side ? "side by side" : "one above the other"));
   }
-  const int half = length / 2;
-  if (side_by_side) {
-    const Size size{half, bytes.size.height};
-    return {part_of(bytes, 0, 0, size), part_of(bytes, half, 0, size)};
-  }
-  const Size size{bytes.size.width, half};
-  return {part_of(bytes, 0, 0, size), part_of(bytes, 0, half, size)};
+  const auto part = [&](const Rect& place) {
+    return part_of(bytes, place.x, place.y, {place.width, place.height});
+  };
+  const auto halves = io::halves_of(bytes.size, layout);
+  return {part(halves[0]), part(halves[1])};
 }
 
 io::LoadedImage picture_of(const FrameBytes& bytes, bool with_colour, const Pool& pool) {

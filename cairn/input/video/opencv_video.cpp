@@ -222,19 +222,17 @@ class OneVideo : public VideoSequence {
   }
 
   [[nodiscard]] io::LoadedPair halves(const cv::Mat& image) {
-    const io::Layout layout = io::layout_of(options().layout);
-    Size half;
+    std::array<Rect, 2> places;
     try {
-      half = io::half_of({image.cols, image.rows}, layout);
+      places = io::halves_of({image.cols, image.rows}, io::layout_of(options().layout));
     } catch (const Error& error) {
       throw Error(video_.path().string() + ": " + error.what());
     }
-    const cv::Size size(half.width, half.height);
-    const bool side_by_side = layout == io::Layout::side_by_side;
-    const cv::Point second(side_by_side ? half.width : 0, side_by_side ? 0 : half.height);
-    const bool is_grey = video_.is_grey();
-    return {picture_of(image(cv::Rect({0, 0}, size)), is_grey, pool()),
-            picture_of(image(cv::Rect(second, size)), is_grey, pool()), 8};
+    const auto picture = [&](const Rect& place) {
+      return picture_of(image(cv::Rect(place.x, place.y, place.width, place.height)), video_.is_grey(),
+                        pool());
+    };
+    return {picture(places[0]), picture(places[1]), 8};
   }
 
   VideoFile video_;

@@ -38,14 +38,18 @@ void copy(const cairn::ros::Pose& from, auto& to) {
   copy(from.orientation, to.orientation);
 }
 
-void copy(const cairn::ros::Image& from, auto& to) {
-  copy(from.header, to.header);
+void copy_pixels(const auto& from, auto& to) {
   to.height = from.height;
   to.width = from.width;
   to.encoding = from.encoding;
   to.is_bigendian = from.is_bigendian;
   to.step = from.step;
   to.data.assign(from.data.begin(), from.data.end());
+}
+
+void copy(const cairn::ros::Image& from, auto& to) {
+  copy(from.header, to.header);
+  copy_pixels(from, to);
 }
 
 void copy(const cairn::ros::DisparityImage& from, auto& to) {
@@ -141,12 +145,7 @@ cairn::Stamp stamp_from(const auto& header) {
 /// The same with its pixels; for input::pictures_of().
 cairn::ros::Image image_from(const auto& message) {
   cairn::ros::Image to;
-  to.height = message.height;
-  to.width = message.width;
-  to.encoding = message.encoding;
-  to.is_bigendian = message.is_bigendian;
-  to.step = message.step;
-  to.data.assign(message.data.begin(), message.data.end());
+  copy_pixels(message, to);
   return to;
 }
 
