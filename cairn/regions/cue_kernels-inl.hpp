@@ -54,6 +54,16 @@ inline void add_steps(const std::uint16_t* edges, const StepRows& rows, int widt
   out[end] = sum(end, std::max(end - 1, 0), end);
 }
 
+inline void halve(const std::uint16_t* upper, const std::uint16_t* lower, int width,
+                  std::uint16_t* CAIRN_RESTRICT out) {
+  for (int x = 0; x < width / 2; ++x) {
+    const int sum = upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1];
+    out[x] = static_cast<std::uint16_t>((sum + 2) >> 2);
+  }
+  if (width % 2 != 0)
+    out[width / 2] = static_cast<std::uint16_t>((upper[width - 1] + lower[width - 1] + 1) >> 1);
+}
+
 inline void sum_trees(const FittedTrees::Split* splits, const float* leaves, std::size_t depth,
                       std::size_t count, const float* features, float* CAIRN_RESTRICT sums) {
   using Lanes = float[kTreeLanes];
@@ -82,7 +92,7 @@ inline void sum_trees(const FittedTrees::Split* splits, const float* leaves, std
   }
 }
 
-inline constexpr CueKernels kCueKernels{nearest_plane, in_steps, add_steps, sum_trees};
+inline constexpr CueKernels kCueKernels{nearest_plane, in_steps, add_steps, halve, sum_trees};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

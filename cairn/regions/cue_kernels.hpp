@@ -40,6 +40,8 @@ struct CueKernels {
   /// Adds to each edge the largest disparity step to one of the four neighbours. A hole has no step.
   void (*add_steps)(const std::uint16_t* edges, const StepRows& rows, int width, const StepSum& by,
                     std::uint16_t* out);
+  /// Half a row of half an image: means of 2×2, rounded. Of an odd width the last column counts twice.
+  void (*halve)(const std::uint16_t* upper, const std::uint16_t* lower, int width, std::uint16_t* out);
   /// Adds to each of kTreeLanes sums the leaves that its sample reaches in `count` complete trees, stored as in
   /// FittedTrees. `features`: kTreeLanes values of each. Precondition: 1 ≤ depth ≤ kDeepestTree.
   void (*sum_trees)(const FittedTrees::Split* splits, const float* leaves, std::size_t depth,

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The kernels of watershed(), build_graph(), measure() and find_floor(), per pixel of a row or value of a
+/// The kernels of watershed(), refine_outlines(), build_graph(), measure() and find_floor(), per pixel of a row or value of a
 /// list; one set per instruction set. Private to the library.
 namespace cairn::kernels {
 
@@ -37,6 +37,14 @@ struct LabelPairs {
 
 /// Extra capacity of the lists that kernels write: whole vectors are stored.
 constexpr std::size_t kListSlack = 64;
+
+/// Three rows of an image; outside it, the border row repeats.
+template <class T>
+struct ThreeRows {
+  const T* above;
+  const T* here;
+  const T* below;
+};
 
 struct FloatRange {
   float least;
@@ -66,6 +74,10 @@ struct LabelKernels {
   /// The pixels of two rows with different labels, and these labels. Returns their number.
   int (*differing)(const RegionId* row, const RegionId* other, int width, std::int32_t* pixels,
                    LabelPairs pairs);
+  /// The pixels of a row, at an outline, that are on the wrong side of the crest of `edges`: of two opposite neighbours
+  /// only one has the pixel's label, and it is a stronger edge than both others. Returns their number.
+  int (*past_crest)(const ThreeRows<RegionId>& labels, const ThreeRows<std::uint16_t>& edges, int width,
+                    std::int32_t* pixels);
   /// The pairs of different labels next to each other in a row, and one above the other in two. Pairs also
   /// present one row higher, or nearby in the row, are skipped: every pair of touching labels in the image is
   /// reported somewhere, most of them rarely. `above` of the first row: labels that do not occur. Return the

@@ -143,6 +143,43 @@ int differing(const RegionId* row, const RegionId* other, int width, std::int32_
   return plain_labels::differing_from(x, count, row, other, width, pixels, pairs);
 }
 
+int past_crest(const ThreeRows<RegionId>& labels, const ThreeRows<std::uint16_t>& edges, int width,
+               std::int32_t* HWY_RESTRICT pixels) {
+  const Labels d;
+  const hn::Rebind<std::uint16_t, Labels> d16;
+  const auto step = static_cast<int>(hn::Lanes(d));
+  const auto steps = hn::Set(d, step);
+  auto here = hn::Iota(d, 1);
+  int count = plain_labels::past_crest_from(0, 1, 0, labels, edges, width, pixels);
+  int x = 1;
+  for (; x + step < width; x += step) {
+    const auto label_at = [&](const RegionId* row, int at) {
+      return hn::LoadU(d, reinterpret_cast<const std::int32_t*>(row) + at);
+    };
+    const auto edge_at = [&](const std::uint16_t* row, int at) {
+      return hn::PromoteTo(d, hn::LoadU(d16, row + at));
+    };
+    const auto label = label_at(labels.here, x);
+    const auto edge = edge_at(edges.here, x);
+    const auto is_past = [&](auto first_label, auto second_label, auto first_edge, auto second_edge) {
+      const auto first_is_same = hn::Eq(first_label, label);
+      const auto behind = hn::IfThenElse(first_is_same, first_edge, second_edge);
+      const auto ahead = hn::IfThenElse(first_is_same, second_edge, first_edge);
+      return hn::And(hn::Xor(first_is_same, hn::Eq(second_label, label)),
+                     hn::Gt(behind, hn::Max(edge, ahead)));
+    };
+    const auto vertically = is_past(label_at(labels.above, x), label_at(labels.below, x),
+                                    edge_at(edges.above, x), edge_at(edges.below, x));
+    const auto across = is_past(label_at(labels.here, x - 1), label_at(labels.here, x + 1),
+                                edge_at(edges.here, x - 1), edge_at(edges.here, x + 1));
+    const auto found = hn::Or(vertically, across);
+    hn::StoreU(compress(here, found), d, pixels + count);
+    count += static_cast<int>(hn::CountTrue(d, found));
+    here = hn::Add(here, steps);
+  }
+  return plain_labels::past_crest_from(x, width, count, labels, edges, width, pixels);
+}
+
 int touches_right(const RegionId* HWY_RESTRICT above, const RegionId* HWY_RESTRICT row, int width,
                   LabelPairs pairs) {
   const Labels d;
@@ -374,9 +411,9 @@ std::size_t find_marked(const std::uint8_t* HWY_RESTRICT marks, std::size_t coun
   return plain_labels::find_marked_from(i, count_found, marks, count, found);
 }
 
-constexpr LabelKernels kLabelKernels{compare,       count_up,    find_runs,       differing,   touches_right,
-                                     touches_below, sum_grey,    sum_disparities, sum_colours, keep_known,
-                                     find_range,    keep_bucket, number_buckets,  find_marked};
+constexpr LabelKernels kLabelKernels{compare,       count_up,      find_runs,   differing,       past_crest,
+                                     touches_right, touches_below, sum_grey,    sum_disparities, sum_colours,
+                                     keep_known,    find_range,    keep_bucket, number_buckets,  find_marked};
 
 }  // namespace
 }  // namespace cairn::kernels::HWY_NAMESPACE

@@ -6,6 +6,7 @@
 #include <array>
 #include <cairn/stereo/gradient.hpp>
 #include <cairn/stereo/label_kernels.hpp>
+#include <utility>
 
 namespace cairn::kernels::plain_labels {
 
@@ -94,6 +95,34 @@ inline int differing_from(int x, int count, const RegionId* row, const RegionId*
 inline int differing(const RegionId* row, const RegionId* other, int width, std::int32_t* pixels,
                      LabelPairs pairs) {
   return differing_from(0, 0, row, other, width, pixels, pairs);
+}
+
+/// past_crest() for the pixels first … last − 1, after `count` pixels.
+inline int past_crest_from(int first, int last, int count, const ThreeRows<RegionId>& labels,
+                           const ThreeRows<std::uint16_t>& edges, int width, std::int32_t* pixels) {
+  for (int x = first; x < last; ++x) {
+    const RegionId label = labels.here[x];
+    const std::uint16_t edge = edges.here[x];
+    const auto is_past = [&](bool first_is_same, bool second_is_same, std::uint16_t one,
+                             std::uint16_t other) {
+      if (!first_is_same) std::swap(one, other);
+      return first_is_same != second_is_same && one > std::max(edge, other);
+    };
+    const int left = std::max(x - 1, 0);
+    const int right = std::min(x + 1, width - 1);
+    pixels[count] = x;
+    count += is_past(labels.above[x] == label, labels.below[x] == label, edges.above[x], edges.below[x]) ||
+                     is_past(labels.here[left] == label, labels.here[right] == label, edges.here[left],
+                             edges.here[right])
+                 ? 1
+                 : 0;
+  }
+  return count;
+}
+
+inline int past_crest(const ThreeRows<RegionId>& labels, const ThreeRows<std::uint16_t>& edges, int width,
+                      std::int32_t* pixels) {
+  return past_crest_from(0, width, 0, labels, edges, width, pixels);
 }
 
 /// touches_right() for the pixels first … last − 1 and their left neighbours, after `count` pairs. A
@@ -233,8 +262,9 @@ inline std::size_t find_marked(const std::uint8_t* marks, std::size_t count, std
   return find_marked_from(0, 0, marks, count, found);
 }
 
-inline constexpr LabelKernels kLabelKernels{
-    compare,         count_up,    find_runs,  differing,  touches_right, touches_below,  sum_grey,
-    sum_disparities, sum_colours, keep_known, find_range, keep_bucket,   number_buckets, find_marked};
+inline constexpr LabelKernels kLabelKernels{compare,         count_up,       find_runs,     differing,
+                                            past_crest,      touches_right,  touches_below, sum_grey,
+                                            sum_disparities, sum_colours,    keep_known,    find_range,
+                                            keep_bucket,     number_buckets, find_marked};
 
 }  // namespace cairn::kernels::plain_labels
