@@ -104,25 +104,35 @@ struct Scene {
 
 // ---- superpixels ----
 
+void expect_equal_to_definition(Size size, std::uint32_t seed, int count) {
+  const Scene scene(size, seed);
+  const Superpixels expected =
+      reference::cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, kNoise, count);
+  for (const Target target : supported_targets()) {
+    SCOPED_TRACE(text(size) + " " + std::to_string(seed) + " " + std::to_string(count) + " " +
+                 std::string(name(target)));
+    const Superpixels found = cut_superpixels(LeftImage{scene.gray, scene.rgb(), kNoise}, scene.disparity_px,
+                                              {count}, Exec::with_threads(1, target));
+    EXPECT_EQ(found.count, expected.count);
+    EXPECT_EQ(numbers(found.labels), numbers(expected.labels));
+    EXPECT_EQ(numbers(found.edges), numbers(expected.edges));
+  }
+}
+
 TEST(CutSuperpixels, EqualsItsDefinition) {
   for (const Size size : sizes()) {
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
-      const Scene scene(size, seed);
-      for (const int count : {1, 7, 30}) {
-        const Superpixels expected =
-            reference::cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, kNoise, count);
-        for (const Target target : supported_targets()) {
-          SCOPED_TRACE(text(size) + " " + std::to_string(seed) + " " + std::to_string(count) + " " +
-                       std::string(name(target)));
-          const Superpixels found =
-              cut_superpixels(LeftImage{scene.gray, scene.rgb(), kNoise}, scene.disparity_px, {count},
-                              Exec::with_threads(1, target));
-          EXPECT_EQ(found.count, expected.count);
-          EXPECT_EQ(numbers(found.labels), numbers(expected.labels));
-          EXPECT_EQ(numbers(found.edges), numbers(expected.edges));
-        }
-      }
+      for (const int count : {1, 7, 30}) expect_equal_to_definition(size, seed, count);
     }
+  }
+}
+
+TEST(CutSuperpixels, EqualsItsDefinitionIfCutAtHalfAndQuarterSize) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    expect_equal_to_definition({64, 33}, seed, 2);
+    expect_equal_to_definition({95, 67}, seed, 6);
+    expect_equal_to_definition({97, 86}, seed, 2);
+    expect_equal_to_definition({131, 33}, seed, 1);
   }
 }
 

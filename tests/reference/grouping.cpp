@@ -30,6 +30,16 @@ void for_each_pair(Size size, Look look) {
 
 // ---- superpixels ----
 
+/// Calls look(p, q) row by row: for each pixel and its right neighbour, then for each and the lower one.
+template <class Look>
+void for_each_pair_by_rows(Size size, Look look) {
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x + 1 < size.width; ++x) look(Point{x, y}, Point{x + 1, y});
+    if (y + 1 == size.height) break;
+    for (int x = 0; x < size.width; ++x) look(Point{x, y}, Point{x, y + 1});
+  }
+}
+
 Image<std::uint16_t> with_depth(View<const std::uint16_t> edges, View<const float> disparity_px,
                                 float noise_sigma) {
   Image<std::uint16_t> sum(edges.size());
@@ -56,10 +66,10 @@ struct Seam {
   double edges = 0;  // grey levels
 };
 
-/// In order of first occurrence in raster order.
+/// In order of first occurrence, row by row.
 std::vector<Seam> seams_of(View<const RegionId> labels, View<const std::uint16_t> edges) {
   std::vector<Seam> seams;
-  for_each_pair(labels.size(), [&](Point p, Point q) {
+  for_each_pair_by_rows(labels.size(), [&](Point p, Point q) {
     const std::pair<std::int32_t, std::int32_t> between =
         std::minmax(number(labels(p.x, p.y)), number(labels(q.x, q.y)));
     if (between.first == between.second) return;
@@ -97,6 +107,136 @@ std::optional<std::pair<std::int32_t, std::int32_t>> next_two(View<const RegionI
     least = cost;
   }
   return two;
+}
+
+Image<std::uint16_t> half_of(View<const std::uint16_t> edges) {
+  Image<std::uint16_t> half({(edges.width() + 1) / 2, (edges.height() + 1) / 2});
+  for (int y = 0; y < half.height(); ++y) {
+    for (int x = 0; x < half.width(); ++x) {
+      double sum = 0;
+      for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}})
+        sum += edges(std::min(2 * x + dx, edges.width() - 1), std::min(2 * y + dy, edges.height() - 1));
+      half(x, y) = static_cast<std::uint16_t>(std::floor(sum / 4 + 0.5));
+    }
+  }
+  return half;
+}
+
+void rename(Image<RegionId>& labels, RegionId from, RegionId to) {
+  for (int y = 0; y < labels.height(); ++y)
+    std::replace(labels.row(y), labels.row(y) + labels.width(), from, to);
+}
+
+void number_in_raster_order(Image<RegionId>& labels) {
+  std::map<RegionId, RegionId> numbers;
+  for (int y = 0; y < labels.height(); ++y) {
+    for (int x = 0; x < labels.width(); ++x) {
+      const RegionId next{static_cast<std::int32_t>(numbers.size())};
+      labels(x, y) = numbers.try_emplace(labels(x, y), next).first->second;
+    }
+  }
+}
+
+/// Basins of fewer than `least` pixels join the neighbour across their lowest pass, all at once.
+void join_small_basins(Basins& basins, View<const std::uint16_t> edges, std::int64_t least) {
+  struct Pass {
+    int edge;
+    std::int32_t to;
+  };
+  std::map<std::int32_t, Pass> lowest;
+  for_each_pair_by_rows(edges.size(), [&](Point p, Point q) {
+    const std::int32_t a = number(basins.labels(p.x, p.y));
+    const std::int32_t b = number(basins.labels(q.x, q.y));
+    if (a == b) return;
+    const int edge = std::max(edges(p.x, p.y), edges(q.x, q.y));
+    for (const auto& [from, to] : {std::pair{a, b}, {b, a}}) {
+      const auto known = lowest.try_emplace(from, Pass{edge, to}).first;
+      if (edge < known->second.edge) known->second = {edge, to};
+    }
+  });
+  std::vector<int> areas;
+  for (std::int32_t basin = 0; basin < basins.count; ++basin) areas.push_back(area_of(basins.labels, basin));
+  std::vector<RegionId> now;  // the label of each basin's pixels
+  for (std::int32_t basin = 0; basin < basins.count; ++basin) now.push_back(RegionId{basin});
+  for (const auto& [basin, pass] : lowest) {
+    if (areas[slot(basin)] >= least) continue;
+    const RegionId from = now[slot(basin)];
+    const RegionId to = now[slot(pass.to)];
+    rename(basins.labels, from, to);
+    std::replace(now.begin(), now.end(), from, to);
+  }
+  number_in_raster_order(basins.labels);
+  basins.count = 0;
+  for (int y = 0; y < edges.height(); ++y) {
+    for (int x = 0; x < edges.width(); ++x)
+      basins.count = std::max(basins.count, number(basins.labels(x, y)) + 1);
+  }
+}
+
+/// A move of an outline by one pixel.
+struct Move {
+  int rise = 0;  // from it and the pixel ahead to the pixel behind it, if positive
+  RegionId to{-1};
+};
+
+/// The best of at most two; vertically before across.
+Move move_of(View<const RegionId> labels, View<const std::uint16_t> edges, Point p) {
+  Move best;
+  for (const auto& [dx, dy] : {std::pair{0, 1}, {1, 0}}) {
+    for (const int sign : {1, -1}) {
+      const Point ahead{p.x + sign * dx, p.y + sign * dy};
+      if (!edges.contains(ahead.x, ahead.y) || labels(ahead.x, ahead.y) == labels(p.x, p.y)) continue;
+      const Point behind{p.x - sign * dx, p.y - sign * dy};
+      if (!edges.contains(behind.x, behind.y) || labels(behind.x, behind.y) != labels(p.x, p.y)) continue;
+      const int rise = edges(behind.x, behind.y) - std::max(edges(p.x, p.y), edges(ahead.x, ahead.y));
+      if (rise > best.rise) best = {rise, labels(ahead.x, ahead.y)};
+    }
+  }
+  return best;
+}
+
+/// Whether the region's pixels among the eight neighbours that are connected with one of the four nearest are all
+/// connected with each other, without p.
+bool can_leave(View<const RegionId> labels, Point p) {
+  const auto is_member = [&](Point q) {
+    return labels.contains(q.x, q.y) && labels(q.x, q.y) == labels(p.x, p.y) && !(q == p) &&
+           std::abs(q.x - p.x) <= 1 && std::abs(q.y - p.y) <= 1;
+  };
+  std::vector<Point> seen;
+  int pieces = 0;
+  for (const auto& [dx, dy] : {std::pair{0, -1}, {1, 0}, {0, 1}, {-1, 0}}) {
+    std::vector<Point> at{{p.x + dx, p.y + dy}};
+    if (!is_member(at.front()) || std::find(seen.begin(), seen.end(), at.front()) != seen.end()) continue;
+    ++pieces;
+    while (!at.empty()) {
+      const Point q = at.back();
+      at.pop_back();
+      if (!is_member(q) || std::find(seen.begin(), seen.end(), q) != seen.end()) continue;
+      seen.push_back(q);
+      for (const auto& [ex, ey] : {std::pair{0, -1}, {1, 0}, {0, 1}, {-1, 0}})
+        at.push_back({q.x + ex, q.y + ey});
+    }
+  }
+  return pieces == 1;
+}
+
+/// Twice the size, with outlines moved twice by at most one pixel.
+Image<RegionId> refined(View<const RegionId> coarse, View<const std::uint16_t> edges) {
+  Image<RegionId> labels(edges.size());
+  for (int y = 0; y < edges.height(); ++y) {
+    for (int x = 0; x < edges.width(); ++x) labels(x, y) = coarse(x / 2, y / 2);
+  }
+  for (int pass = 0; pass < 2; ++pass) {
+    const Image<RegionId> before = labels.clone();
+    for (int y = 0; y < edges.height(); ++y) {
+      for (int x = 0; x < edges.width(); ++x) {
+        if (move_of(before, edges, {x, y}).rise == 0) continue;
+        const Move move = move_of(labels, edges, {x, y});
+        if (move.rise > 0 && can_leave(labels, {x, y})) labels(x, y) = move.to;
+      }
+    }
+  }
+  return labels;
 }
 
 // ---- cues ----
@@ -381,27 +521,22 @@ Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<con
                             float noise_sigma, int count) {
   Superpixels result;
   result.edges = reference::edge_strength(gray, rgb, 0.7F);
-  const Image<std::uint16_t> edges = with_depth(result.edges, disparity_px, noise_sigma);
+  std::vector<Image<std::uint16_t>> levels;
+  levels.push_back(with_depth(result.edges, disparity_px, noise_sigma));
+  while (levels.back().size().area() >= 1000 * std::int64_t{count}) levels.push_back(half_of(levels.back()));
+  const Image<std::uint16_t>& edges = levels.back();
   Basins basins = reference::watershed(edges);
-  for (int left = basins.count; left > count; --left) {
+  join_small_basins(basins, edges, edges.size().area() / count / 16);
+  for (; basins.count > count; --basins.count) {
     const auto two = next_two(basins.labels, edges);
     if (!two) break;
-    for (int y = 0; y < gray.height(); ++y) {
-      for (int x = 0; x < gray.width(); ++x) {
-        RegionId& label = basins.labels(x, y);
-        if (number(label) == two->second) label = RegionId{two->first};
-      }
-    }
+    rename(basins.labels, RegionId{two->second}, RegionId{two->first});
   }
-  std::map<RegionId, RegionId> numbers;
-  result.labels = Image<RegionId>(gray.size());
-  for (int y = 0; y < gray.height(); ++y) {
-    for (int x = 0; x < gray.width(); ++x) {
-      const RegionId next{static_cast<std::int32_t>(numbers.size())};
-      result.labels(x, y) = numbers.try_emplace(basins.labels(x, y), next).first->second;
-    }
-  }
-  result.count = static_cast<int>(numbers.size());
+  number_in_raster_order(basins.labels);
+  result.count = basins.count;
+  for (std::size_t level = levels.size() - 1; level-- > 0;)
+    basins.labels = refined(basins.labels, levels[level]);
+  result.labels = std::move(basins.labels);
   return result;
 }
 

@@ -90,22 +90,14 @@ TEST(Superpixels, OfEqualBordersTheFirstFuses) {
             (std::vector<std::int64_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
 }
 
-TEST(Superpixels, AreConnectedAndNumberedInRasterOrder) {
-  const Image<Gray> gray = random_image<Gray>({40, 30}, 0, 255, 3);
-  const Superpixels superpixels = cut(gray, 25, 7.0F);
-  ASSERT_EQ(superpixels.count, 25);
-  std::int32_t next = 0;
-  std::vector<std::set<std::pair<int, int>>> pixels(25);
-  for (int y = 0; y < 30; ++y) {
-    for (int x = 0; x < 40; ++x) {
-      const std::int32_t label = number(superpixels.labels(x, y));
-      ASSERT_LE(label, next);
-      next = std::max(next, label + 1);
-      pixels[slot(label)].insert({x, y});
-    }
-  }
-  EXPECT_EQ(next, 25);
+/// Fails where a label's pixels are not 4-connected, or a label has none.
+void expect_connected(const Superpixels& superpixels) {
+  const Image<RegionId>& labels = superpixels.labels;
+  std::vector<std::set<std::pair<int, int>>> pixels(slot(superpixels.count));
+  for (int y = 0; y < labels.height(); ++y)
+    for (int x = 0; x < labels.width(); ++x) pixels.at(index(labels(x, y))).insert({x, y});
   for (std::set<std::pair<int, int>>& left : pixels) {
+    ASSERT_FALSE(left.empty());
     std::vector<std::pair<int, int>> at{*left.begin()};
     left.erase(left.begin());
     while (!at.empty()) {
@@ -117,6 +109,45 @@ TEST(Superpixels, AreConnectedAndNumberedInRasterOrder) {
     }
     EXPECT_TRUE(left.empty());
   }
+}
+
+TEST(Superpixels, AreConnectedAndNumberedInRasterOrder) {
+  const Image<Gray> gray = random_image<Gray>({40, 30}, 0, 255, 3);
+  const Superpixels superpixels = cut(gray, 25, 7.0F);
+  ASSERT_EQ(superpixels.count, 25);
+  std::int32_t next = 0;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const std::int32_t label = number(superpixels.labels(x, y));
+      ASSERT_LE(label, next);
+      next = std::max(next, label + 1);
+    }
+  }
+  EXPECT_EQ(next, 25);
+  expect_connected(superpixels);
+}
+
+TEST(Superpixels, StayConnectedWhereOutlinesAreRefined) {
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const Superpixels superpixels = cut(random_image<Gray>({190, 170}, 0, 255, seed), 7, 7.0F);
+    EXPECT_EQ(superpixels.count, 7);
+    expect_connected(superpixels);
+  }
+}
+
+TEST(Superpixels, OfALargeImageFollowAnEdgeToThePixel) {
+  Image<Gray> gray(Size{101, 77}, Gray{40}, {});
+  const auto is_bright = [](int x, int y) { return 3 * (x - 50) > y - 30; };
+  for (int y = 0; y < gray.height(); ++y)
+    for (int x = 0; x < gray.width(); ++x)
+      if (is_bright(x, y)) gray(x, y) = 220;
+  const Superpixels superpixels = cut(gray, 2, 7.0F);  // 3,888 pixels each: cut at a quarter of the size
+  ASSERT_EQ(superpixels.count, 2);
+  int wrong = 0;
+  for (int y = 0; y < gray.height(); ++y)
+    for (int x = 0; x < gray.width(); ++x)
+      wrong += (number(superpixels.labels(x, y)) == 1) != is_bright(x, y) ? 1 : 0;
+  EXPECT_LE(wrong, gray.height());  // half a pixel on average: the crest is two pixels wide
 }
 
 TEST(Superpixels, AsASegmentationHaveMeanGreyLevels) {
