@@ -23,7 +23,7 @@ void fields(SuperpixelsConfig& c, V&& v) {
 
 /// Connected pieces of the image without a clear edge of brightness, colour or depth inside.
 struct Superpixels {
-  Image<RegionId> labels;  // 0 … count−1 in raster order of their first pixel
+  Image<RegionId> labels;  // 0 … count−1 in raster order of their first pixel, before outlines are refined
   int count = 0;
   Image<std::uint16_t> edges;  // superpixel_edges(), in 1/4 grey level
 };
@@ -31,13 +31,18 @@ struct Superpixels {
 /// Superpixels by watershed and merging. The edge image is edge_strength() at σ = 0.7 px, plus 2 grey levels
 /// per px of the largest disparity step to one of the four neighbours (at most 8, rounded to 1/4), so that
 /// depth separates surfaces of equal brightness; values below 1 + noise_sigma grey levels (rounded down to
-/// 1/4) are set to 0. The basins of its watershed are merged in pairs, in ascending order of
+/// 1/4) are set to 0. While it has at least 1000 pixels per superpixel, it is halved: means of 2×2, rounded. Basins of
+/// its watershed with less than 1/16 of the pixels of an average superpixel join the neighbour across their lowest
+/// pass, all at once. Then they are merged in pairs, in ascending order of
 ///
 ///     (mean edge along the common border + 1/2 grey level) · sqrt(area of the smaller one)
 ///
-/// until `count` are left: small and similar ones first. The edge between two pixels is the stronger one of
-/// theirs, depth included. Ties: the border that occurs first in raster order, from each pixel to the right
-/// before down. `disparity_px`: NaN for holes, which add no edge.
+/// until `count` are left: small and similar ones first. The edge (or pass) between two pixels is the stronger one of
+/// theirs, depth included. Ties: the border that occurs first, row by row, from each pixel to the right before down.
+///
+/// If the edges were halved, labels are doubled again as often, and outlines moved after each time, twice by at most
+/// one pixel: a pixel goes over to the superpixel of a neighbour if the opposite neighbour, of its own superpixel, is a
+/// stronger edge than both, and if its superpixel stays connected. `disparity_px`: NaN for holes, which add no edge.
 /// (docs/stages/superpixels.md, beyond the paper)
 Superpixels cut_superpixels(const LeftImage& left, View<const float> disparity_px,
                             const SuperpixelsConfig& config, const Exec& exec);
