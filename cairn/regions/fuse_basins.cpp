@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kGrain = 16;                // rows
 constexpr double kEvenWithoutEdge = 2.0;  // 1/4 grey level
-constexpr int kSmall = 16;                // times smaller than superpixels are on average
+constexpr int kSmall = 40;                // times smaller than superpixels are on average
 
 /// Two neighbouring pixels of different labels.
 struct Contact {

@@ -32,7 +32,7 @@ struct Superpixels {
 /// per px of the largest disparity step to one of the four neighbours (at most 8, rounded to 1/4), so that
 /// depth separates surfaces of equal brightness; values below 1 + noise_sigma grey levels (rounded down to
 /// 1/4) are set to 0. While it has at least 1000 pixels per superpixel, it is halved: means of 2×2, rounded. Basins of
-/// its watershed with less than 1/16 of the pixels of an average superpixel join the neighbour across their lowest
+/// its watershed with less than 1/40 of the pixels of an average superpixel join the neighbour across their lowest
 /// pass, all at once. Then they are merged in pairs, in ascending order of
 ///
 ///     (mean edge along the common border + 1/2 grey level) · sqrt(area of the smaller one)

@@ -526,7 +526,7 @@ Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<con
   while (levels.back().size().area() >= 1000 * std::int64_t{count}) levels.push_back(half_of(levels.back()));
   const Image<std::uint16_t>& edges = levels.back();
   Basins basins = reference::watershed(edges);
-  join_small_basins(basins, edges, edges.size().area() / count / 16);
+  join_small_basins(basins, edges, edges.size().area() / count / 40);
   for (; basins.count > count; --basins.count) {
     const auto two = next_two(basins.labels, edges);
     if (!two) break;
