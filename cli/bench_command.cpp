@@ -20,6 +20,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "bench_budget.hpp"
 #include "commands.hpp"
 #include "common.hpp"
 #include "terminal.hpp"
@@ -41,6 +42,8 @@ struct BenchOptions {
   std::optional<double> seconds;
   bool no_opencv = false;
   std::optional<std::string> json;
+  std::optional<double> budget_hz;
+  bool has_preset = false;  // on the command line or in --config
 };
 
 // ---- the input ----
@@ -84,18 +87,22 @@ Size size_in(const std::string& words) {
   return size;
 }
 
-Subject draw(const BenchOptions& options) {
-  constexpr float kShareOfRange = 0.75F;  // of the range, covered by the scene's disparities
+Size size_of(const BenchOptions& options) {
+  return options.size ? size_in(*options.size) : Size{640, 480};
+}
+
+void refuse_what_needs_a_pair(const BenchOptions& options) {
   if (!options.truth.empty())
     throw Error("--truth " + options.truth + ": applies to your own pair only; give LEFT and RIGHT");
   if (!options.input.calib.empty())
     throw Error("--calib " + options.input.calib + ": applies to your own pair only; give LEFT and RIGHT");
-  const Size size = options.size ? size_in(*options.size) : Size{640, 480};
+}
+
+Subject draw(const BenchOptions& options) {
+  refuse_what_needs_a_pair(options);
+  const Size size = size_of(options);
   ResolvedConfig resolved = resolve(options.input.config);
-  const MatchConfig& match = resolved.config.match;
-  const int farthest_seen =
-      match.min_disparity + static_cast<int>(kShareOfRange * static_cast<float>(match.num_disparities));
-  timing::DrawnPair drawn = timing::draw_pair(size, static_cast<float>(std::max(1, farthest_seen)));
+  timing::DrawnPair drawn = timing::draw_pair(size, resolved.config.match);
   Subject subject;
   subject.name = "rendered room";
   subject.drawn = true;
@@ -152,9 +159,8 @@ Subject load(const BenchOptions& options, const Exec& exec) {
   return subject;
 }
 
-timing::Limits limits_of(const BenchOptions& options) {
-  constexpr timing::Limits kByDefault{.frames = 100, .seconds = 10};
-  if (!options.frames && !options.seconds) return kByDefault;
+timing::Limits limits_of(const BenchOptions& options, const timing::Limits& by_default) {
+  if (!options.frames && !options.seconds) return by_default;
   timing::Limits limits;
   if (options.frames) limits.frames = *options.frames;
   if (options.seconds) limits.seconds = *options.seconds;
@@ -399,17 +405,33 @@ std::string bench_json(const Findings& found) {
   return output::json_text(j, 1) + "\n";
 }
 
+int report_budget(const BenchOptions& options, const Exec& exec) {
+  constexpr timing::Limits kOfATrial{.frames = 100, .seconds = 2};
+  Budget budget{*options.budget_hz, size_of(options), {"default", "paper"}, limits_of(options, kOfATrial)};
+  if (options.has_preset) budget.presets = {options.input.config.preset};
+  const BudgetReport report = sizes_within_budget(budget, options.input.config, exec);
+  if (options.json) io::write_file(*options.json, output::json_text(report.json, 1) + "\n");
+  std::cout << report.text;
+  return 0;
+}
+
 int bench(const BenchOptions& options, bool drawn) {
   (void)resolve(options.input.config);
   Findings found;
   found.exec = make_exec(options.exec);
+  if (options.budget_hz) {
+    if (!drawn) throw Error("--budget: is for the pair that the program draws; leave LEFT and RIGHT out");
+    refuse_what_needs_a_pair(options);
+    return report_budget(options, found.exec);
+  }
   found.subject = drawn ? draw(options) : load(options, found.exec);
   const Subject& subject = found.subject;
+  constexpr timing::Limits kByDefault{.frames = 100, .seconds = 10};
   timing::set_opencv_threads(found.exec.threads());
   const auto peers =
       options.no_opencv ? std::span<const timing::OpenCvMatcher>() : timing::quick_opencv_matchers();
-  found.times =
-      timing::time_frames(subject.pair(), subject.rig, subject.config, found.exec, limits_of(options), peers);
+  found.times = timing::time_frames(subject.pair(), subject.rig, subject.config, found.exec,
+                                    limits_of(options, kByDefault), peers);
   found.accuracies = accuracies_of(subject, found.times);
   if (options.json) io::write_file(*options.json, bench_json(found));
   std::cout << heading(found) << "\n" << stage_table(found.times) << "\n" << summary(found);
@@ -440,12 +462,19 @@ Work declare_bench(CLI::App& app) {
                  "occlusion.png, to report accuracy")
       ->type_name("PATH");
   app.add_flag("--no-opencv", options->no_opencv, "no comparison with OpenCV's matchers");
+  app.add_option("--budget", options->budget_hz,
+                 "find the sizes at which each preset reaches this rate on this machine")
+      ->check(CLI::Range(0.01, 10'000.0).name(""))
+      ->type_name("HZ");
   app.add_option("--json", options->json, "JSON file for all measurements")->type_name("FILE");
   app.footer(
       "Without LEFT and RIGHT a room is rendered: the same pixels on every machine.\n"
       "Without --frames and --seconds: 100 frames, or as many as fit in 10 seconds.\n"
       "Times are wall-clock times; `CPU ms` is the processor time of all threads together.");
-  return [options, &app] { return bench(*options, app.count("LEFT") == 0); };
+  return [options, &app] {
+    options->has_preset = app.count("--preset") > 0 || !options->input.config.file.empty();
+    return bench(*options, app.count("LEFT") == 0);
+  };
 }
 
 }  // namespace cairn::cli

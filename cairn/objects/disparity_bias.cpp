@@ -67,8 +67,9 @@ Plane plane_of(const PlaneFit& points) {
   return {m.mean_d - per_x * m.mean_x - per_y * m.mean_y, per_x, per_y};
 }
 
-/// Of a mask: its centroid, and its brightness along the rows.
+/// Of a mask: its size and centroid, and its brightness along the rows.
 struct Brightness {
+  double pixels = 0;
   double x = 0;
   double y = 0;
   double slope = 0;  // from the middle of a row to its end, share of the mean
@@ -94,10 +95,12 @@ struct ObjectView {
     }
   }
 
+  [[nodiscard]] int step() const { return row_step(object.pixel_count); }
+  /// Every step()-th one.
   [[nodiscard]] std::vector<Row> rows() const {
     std::vector<Row> rows;
     const Rect box = object.box_px;
-    for (int y = box.y; y < box.y + box.height; ++y) {
+    for (int y = box.y; y < box.y + box.height; y += step()) {
       int first = box.x;
       int last = box.x + box.width - 1;
       while (first <= last && !has(first, y)) ++first;
@@ -145,7 +148,7 @@ struct ObjectView {
 
 Brightness ObjectView::brightness(const std::vector<Row>& rows) const {
   constexpr double kDark = 8;  // grey levels
-  const double n = object.pixel_count;
+  double n = 0;
   double x_sum = 0;
   double y_sum = 0;
   double grey_sum = 0;
@@ -155,6 +158,7 @@ Brightness ObjectView::brightness(const std::vector<Row>& rows) const {
   for_each_pixel(rows, [&](const Row& row, int x) {
     const double t = row.across(x);
     const int grey = left(x, row.y);
+    n += 1;
     x_sum += x;
     y_sum += row.y;
     grey_sum += grey;
@@ -162,9 +166,10 @@ Brightness ObjectView::brightness(const std::vector<Row>& rows) const {
     across_squared += t * t;
     across_grey += t * grey;
   });
+  n = std::max(n, 1.0);
   const double mean = grey_sum / n;
   const double slope = (across_grey - across * mean) / (across_squared + 1e-6) / std::max(mean, kDark);
-  return {x_sum / n, y_sum / n, slope};
+  return {n, x_sum / n, y_sum / n, slope};
 }
 
 BiasFeatures ObjectView::features(double shift_px) const {
@@ -208,11 +213,11 @@ BiasFeatures ObjectView::features(double shift_px) const {
       all, [&](const Row& row, int x) { return in_middle(row, x) && !std::isnan(disparity_px(x, row.y)); });
   const auto inside = stretches(
       all, [](const Row& row, int x) { return x - row.first >= kOutline && row.last - x >= kOutline; });
-  const ShiftEstimate of_middle = match_shift(middle_measured, measured, left, right, kShiftSigma);
-  const ShiftEstimate middle_of_plane = match_shift(middle, on_plane, left, right, kSigmaFromPlane);
-  const ShiftEstimate inside_of_plane = match_shift(inside, on_plane, left, right, kSigmaFromPlane);
+  const ShiftEstimate of_middle = match_shift(middle_measured, measured, left, right, kShiftSigma, step());
+  const ShiftEstimate middle_of_plane = match_shift(middle, on_plane, left, right, kSigmaFromPlane, step());
+  const ShiftEstimate inside_of_plane = match_shift(inside, on_plane, left, right, kSigmaFromPlane, step());
 
-  const double width = double{1} * object.pixel_count / std::max<double>(1, static_cast<double>(all.size()));
+  const double width = grey.pixels / std::max<double>(1, static_cast<double>(all.size()));
   const std::array<double, kBiasFeatures> found{double{object.valid_share},
                                                 double{d0} * width / left.width(),
                                                 double{median(ends, d0, exec)} - double{d0},

@@ -6,6 +6,7 @@
 #include <cairn/core/image.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 /// The shift of the disparities of some pixels at which both images agree. Private to the library.
@@ -20,6 +21,13 @@ struct Stretch {
 
 inline constexpr int kOutline = 4;  // px at either end of a row, which keep the disparity of the outline
 inline constexpr double kShiftSigma = 0.2;  // px, standard deviation of the prior of the shift
+
+/// Of an object of so many pixels every n-th row is matched: more pixels hardly make the shift more certain, but take
+/// as long each. 1 below 32,768 pixels.
+inline int row_step(std::int64_t pixels) {
+  constexpr std::int64_t kEnough = 1 << 14;
+  return static_cast<int>(std::max<std::int64_t>(1, pixels / kEnough));
+}
 
 struct ShiftEstimate {
   double shift_px = 0;
@@ -76,10 +84,11 @@ Sums compare(const std::vector<Stretch>& stretches, const Disparity& disparity_a
 }  // namespace object_match
 
 /// Two steps of least squares on the brightness, with a common offset of both images, and a prior of no shift
-/// with a standard deviation of `sigma_px` (docs/stages/objects.md). disparity_at(x, y): px.
+/// with a standard deviation of `sigma_px` (docs/stages/objects.md). disparity_at(x, y): px. `stretches`: of every
+/// `step`-th row.
 template <class Disparity>
 ShiftEstimate match_shift(const std::vector<Stretch>& stretches, const Disparity& disparity_at,
-                          View<const Gray> left, View<const Gray> right, double sigma_px) {
+                          View<const Gray> left, View<const Gray> right, double sigma_px, int step) {
   using namespace object_match;
   constexpr int kSteps = 2;
   const double prior = 1 / (sigma_px * sigma_px);
@@ -89,7 +98,7 @@ ShiftEstimate match_shift(const std::vector<Stretch>& stretches, const Disparity
     double wanted = -prior * estimate.shift_px;
     estimate.certainty = 0;
     if (sums.n > 0) {
-      const double variance = kPixelsAsOne * (sums.var_e() / sums.n + kRounding);
+      const double variance = kPixelsAsOne / step * (sums.var_e() / sums.n + kRounding);
       wanted += sums.cov() / variance;
       estimate.certainty = sums.var_g() / variance;
     }

@@ -21,9 +21,12 @@ double beyond_doubt(double bias) {
   return std::copysign(std::clamp(std::abs(bias) - kDoubt, 0.0, kMaxBias), bias);
 }
 
-/// Pixels of a row whose neighbours up to kOutline on both sides belong to the same object and have a disparity.
+/// Pixels of a row whose neighbours up to kOutline on both sides belong to the same object and have a disparity; of
+/// every row_step()-th row of an object.
 std::vector<std::vector<Stretch>> interiors(const Objects& objects, View<const float> disparity_px) {
   std::vector<std::vector<Stretch>> of(objects.list.size());
+  std::vector<int> steps;
+  for (const Object& object : objects.list) steps.push_back(row_step(object.pixel_count));
   const int width = disparity_px.width();
   for (int y = 0; y < disparity_px.height(); ++y) {
     const ObjectId* const id = objects.labels.row(y);
@@ -32,8 +35,9 @@ std::vector<std::vector<Stretch>> interiors(const Objects& objects, View<const f
       const int begin = x++;
       if (id[begin] == ObjectId::none || std::isnan(d[begin])) continue;
       while (x < width && id[x] == id[begin] && !std::isnan(d[x])) ++x;
-      if (x - begin > 2 * kOutline)
-        of[slot(number(id[begin]) - 1)].push_back({y, begin + kOutline, x - kOutline});
+      const auto object = slot(number(id[begin]) - 1);
+      if (x - begin > 2 * kOutline && y % steps[object] == 0)
+        of[object].push_back({y, begin + kOutline, x - kOutline});
     }
   }
   return of;
@@ -68,7 +72,9 @@ std::vector<double> image_shifts(const Objects& objects, const DisparityMap& dis
   const auto measured = [&](int x, int y) { return double{disparity.disparity_px(x, y)}; };
   parallel_for(exec, static_cast<int>(interior.size()), 1, [&](int first, int last) {
     for (auto i = slot(first); i < slot(last); ++i)
-      shifts[i] = match_shift(interior[i], measured, left, right, kShiftSigma).shift_px;
+      shifts[i] =
+          match_shift(interior[i], measured, left, right, kShiftSigma, row_step(objects.list[i].pixel_count))
+              .shift_px;
   });
   return shifts;
 }

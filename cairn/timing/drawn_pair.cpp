@@ -218,4 +218,11 @@ DrawnPair draw_pair(Size size, float largest_disparity_px) {
   return drawn;
 }
 
+DrawnPair draw_pair(Size size, const MatchConfig& match) {
+  constexpr float kShareOfRange = 0.75F;
+  const int farthest_seen =
+      match.min_disparity + static_cast<int>(kShareOfRange * static_cast<float>(match.num_disparities));
+  return draw_pair(size, static_cast<float>(std::max(1, farthest_seen)));
+}
+
 }  // namespace cairn::timing

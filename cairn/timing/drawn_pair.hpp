@@ -4,6 +4,7 @@
 
 #include <cairn/core/image.hpp>
 #include <cairn/core/stereo_pair.hpp>
+#include <cairn/stereo/match.hpp>
 #include <cstdint>
 
 /// A synthetic pair for timing without input: the same pixels on every machine.
@@ -25,5 +26,7 @@ struct DrawnPair {
 /// sensor noise and different texture everywhere. The floor at the bottom row has `largest_disparity_px`;
 /// boxes and texture scale with the image.
 DrawnPair draw_pair(Size size, float largest_disparity_px);
+/// The same with three quarters of the searched range as the largest disparity.
+DrawnPair draw_pair(Size size, const MatchConfig& match);
 
 }  // namespace cairn::timing

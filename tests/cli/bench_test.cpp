@@ -42,6 +42,28 @@ TEST_F(Bench, RendersAPairIfNoneIsGivenAndSaysSo) {
   EXPECT_EQ(everything(), before);
 }
 
+TEST_F(Bench, BudgetFindsSizesThatReachARate) {
+  const Json all = measured({"--size", "160x120", "--budget", "0.1", "--threads", "1"});
+  ASSERT_EQ(all.at("trials").size(), 2U) << "the full size is fast enough";
+  EXPECT_EQ(all.at("trials")[0].at("preset"), "default");
+  EXPECT_EQ(all.at("trials")[1].at("preset"), "paper");
+  for (const Json& trial : all.at("trials")) {
+    EXPECT_EQ(trial.at("width"), 160);
+    EXPECT_EQ(trial.at("is_within"), true);
+    EXPECT_GT(trial.at("median_ms"), 0);
+    EXPECT_LE(trial.at("median_ms"), trial.at("p99_ms"));
+  }
+  const Json none = measured({"--size", "96x72", "--budget", "10000", "--set", "match.num_disparities=40"});
+  ASSERT_EQ(none.at("trials").size(), 6U)
+      << "two presets at 1, 3/4 and 1/2 of the size; smaller ones are not tried";
+  EXPECT_EQ(none.at("trials")[1].at("height"), 54);
+  EXPECT_EQ(none.at("trials")[1].at("num_disparities"), 30);
+  EXPECT_EQ(none.at("trials")[5].at("is_within"), false);
+  const Outcome outcome = run({"bench", "--size", "64x48", "--budget", "0.1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("default: 64x48 with 64 disparities"), std::string::npos) << outcome.out;
+}
+
 TEST_F(Bench, JsonListsEveryStageInOrderWithItsTimes) {
   const Json found = measured({"--size", "160x120", "--frames", "4", "--threads", "1", "--no-opencv"});
   EXPECT_EQ(found.at("frames"), 4);
@@ -158,6 +180,8 @@ TEST_F(Bench, RefusesContradictoryArguments) {
   refuses({"bench", path("many")}, {"2 frames", "one"});
   refuses({"bench", pair[0]}, {"left.png", "right"});
   refuses({"bench", ""}, {"LEFT", "empty"});
+  refuses(with("bench", pair, {"--budget", "10"}), {"--budget", "LEFT"});
+  refuses({"bench", "--budget", "0"}, {"--budget"});
   refuses({"bench", "--frames", "0"}, {"--frames"});
   refuses({"bench", "--seconds", "-1"}, {"--seconds"});
   refuses({"bench", "--set", "match.no_such=1"}, {"match.no_such"});

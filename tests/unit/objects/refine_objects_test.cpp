@@ -31,12 +31,16 @@ struct Scene {
     float true_px;
     float surface_disparity_px;  // by the matching
   };
-  Image<Gray> left{kSize, Gray{90}, {}};
-  Image<Gray> right{kSize, Gray{90}, {}};
-  Objects objects{Image<ObjectId>(kSize, ObjectId::none, {}), {}};
-  DisparityMap disparity{Image<float>(kSize, 2.0F, {}), Image<Reject>(kSize, Reject::none, {})};
+  Image<Gray> left;
+  Image<Gray> right;
+  Objects objects;
+  DisparityMap disparity;
 
-  explicit Scene(const std::vector<Board>& boards, bool textured = true, int brighter = 0) {
+  explicit Scene(const std::vector<Board>& boards, bool textured = true, int brighter = 0, Size size = kSize)
+      : left(size, Gray{90}, {}),
+        right(size, Gray{90}, {}),
+        objects{Image<ObjectId>(size, ObjectId::none, {}), {}},
+        disparity{Image<float>(size, 2.0F, {}), Image<Reject>(size, Reject::none, {})} {
     for (const auto& [rect, true_px, surface_disparity_px] : boards) {
       Object object;
       object.id = ObjectId{static_cast<std::int32_t>(objects.list.size()) + 1};
@@ -50,7 +54,7 @@ struct Scene {
           disparity.disparity_px(x, y) = surface_disparity_px;
           left(x, y) = textured ? rounded(wave(x, y)) : Gray{128};
         }
-        for (int x = 0; x < kSize.width; ++x) {
+        for (int x = 0; x < size.width; ++x) {
           const double in_left = x + double{true_px};
           if (in_left >= rect.x && in_left < rect.x + rect.width)
             right(x, y) = textured ? rounded(wave(in_left, y) + static_cast<float>(brighter)) : Gray{128};
@@ -71,6 +75,13 @@ struct Scene {
 TEST(RefineObjects, FindsTheShiftThatMakesTheImagesAgree) {
   for (const float off : {-0.6F, -0.25F, 0.0F, 0.25F, 0.6F}) {
     const Scene scene({{{40, 10, 60, 40}, 12.3F, 12.3F + off}});
+    EXPECT_NEAR(scene.refined().list[0].disparity_px, 12.3, 0.03) << off;
+  }
+}
+
+TEST(RefineObjects, UsesSomeRowsOfALargeObject) {
+  for (const float off : {-0.4F, 0.3F}) {
+    const Scene scene({{{40, 10, 560, 300}, 12.3F, 12.3F + off}}, true, 0, {640, 320});
     EXPECT_NEAR(scene.refined().list[0].disparity_px, 12.3, 0.03) << off;
   }
 }
