@@ -71,10 +71,10 @@ std::vector<double> image_shifts(const Objects& objects, const DisparityMap& dis
   std::vector<double> shifts(objects.list.size());
   const auto measured = [&](int x, int y) { return double{disparity.disparity_px(x, y)}; };
   parallel_for(exec, static_cast<int>(interior.size()), 1, [&](int first, int last) {
-    for (auto i = slot(first); i < slot(last); ++i)
-      shifts[i] =
-          match_shift(interior[i], measured, left, right, kShiftSigma, row_step(objects.list[i].pixel_count))
-              .shift_px;
+    for (auto i = slot(first); i < slot(last); ++i) {
+      const int step = row_step(objects.list[i].pixel_count);
+      shifts[i] = match_shift(interior[i], measured, left, right, kShiftSigma, step).shift_px;
+    }
   });
   return shifts;
 }
