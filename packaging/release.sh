@@ -29,13 +29,13 @@ repeated() {  # FILE FOUND EXPECTED
 repeated ros2/package.xml "$(sed -n 's|.*<version>\(.*\)</version>.*|\1|p' ros2/package.xml)" "$version"
 repeated CITATION.cff "$(sed -n 's/^version: *//p' CITATION.cff)" "$version"
 for page in docs/install.md tests/consumer/CMakeLists.txt; do
-  repeated "$page" "$(sed -n 's/.*find_package(cairn \([0-9.]*\) .*/\1/p' "$page" | head -1)" "${version%.*}"
+  repeated "$page" "$(sed -n '0,/.*find_package(cairn \([0-9.]*\) .*/s//\1/p' "$page")" "${version%.*}"
 done
-repeated docs/install.md "$(sed -n 's/.*`libcairn\([0-9][0-9.]*\)`.*/\1/p' docs/install.md | head -1)" "${version%.*}"
+repeated docs/install.md "$(sed -n '0,/.*`libcairn\([0-9][0-9.]*\)`.*/s//\1/p' docs/install.md)" "${version%.*}"
 [[ $mode != --versions ]] || exit 0
 
 commit=$(git rev-parse --verify --quiet HEAD) || refuse "$PWD: no commit, expected a git repository"
-changed() { git status --porcelain | head -1 | cut -c4-; }
+changed() { git status --porcelain | sed -n '1s/^...//p'; }
 [[ -z $(changed) ]] || refuse "the tree has uncommitted changes, the first is $(changed); commit or stash them"
 for tag in "v$version" "$version"; do
   ! git rev-parse --verify --quiet "refs/tags/$tag" >/dev/null ||

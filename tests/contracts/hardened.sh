@@ -22,10 +22,10 @@ while IFS= read -r -d '' file; do
   if grep -q 'INTERP' <<<"$head"; then grep -qE 'FLAGS_1.*PIE' <<<"$dynamic" || complain "is no PIE"; fi
   grep -q 'GNU_RELRO' <<<"$head" || complain "has no RELRO"
   grep -qE 'BIND_NOW|FLAGS_1.*NOW' <<<"$dynamic" || complain "binds lazily (no BIND_NOW), so RELRO covers a part only"
-  grep -E 'GNU_STACK' <<<"$head" | grep -qE ' RW +0x' || complain "has a stack that can be run"
+  grep -E 'GNU_STACK' <<<"$head" | grep -E ' RW +0x' >/dev/null || complain "has a stack that can be run"
   ! grep -qE 'LOAD.* RWE ' <<<"$head" || complain "has memory that can be written and run"
   ! grep -q 'TEXTREL' <<<"$dynamic" || complain "has relocations in its code"
-  ! grep -E 'R(UN)?PATH' <<<"$dynamic" | grep -qvE '\[(\$ORIGIN[^]:]*:?)+\]' || complain "names a folder of libraries: $(grep -E 'R(UN)?PATH' <<<"$dynamic")"
+  ! grep -E 'R(UN)?PATH' <<<"$dynamic" | grep -vE '\[(\$ORIGIN[^]:]*:?)+\]' >/dev/null || complain "names a folder of libraries: $(grep -E 'R(UN)?PATH' <<<"$dynamic")"
   grep -q '__stack_chk_fail' <<<"$symbols" || complain "has no stack protector"
   if grep -qE ' UND +__[a-z]+_chk(@|$)' <<<"$symbols"; then checked=$((checked + 1)); fi
 done < <(find "$@" -type f \( -perm -u+x -o -name '*.so*' \) -print0)

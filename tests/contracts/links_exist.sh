@@ -24,7 +24,7 @@ while read -r page; do
     if [[ ! -e $path ]]; then
       echo "$page: $target: no such file"
       bad=1
-    elif [[ $target == *#* && $path == *.md ]] && ! anchors "$path" | grep -qxF -- "${target#*#}"; then
+    elif [[ $target == *#* && $path == *.md ]] && ! anchors "$path" | grep -xF -- "${target#*#}" >/dev/null; then
       echo "$page: $target: no such heading"
       bad=1
     fi

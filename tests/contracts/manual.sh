@@ -68,7 +68,7 @@ expect "bash: an option's name" "match.method=" "$(bash_offers cairn segment --s
 expect "bash: an option's value" "semi_global window" "$(bash_offers cairn segment --set match.method =)"
 expect "bash: a started value" "window" "$(bash_offers cairn segment --set match.method = w)"
 expect "bash: a command's help" "config" "$(bash_offers cairn help conf)"
-expect "bash: what may be tuned" "superpixels.* superpixels.count" "$(bash_offers cairn tune --options superp | tr ' ' '\n' | sort | head -2 | paste -sd' ')"
+expect "bash: what may be tuned" "superpixels.* superpixels.count" "$(bash_offers cairn tune --options superp | tr ' ' '\n' | sort | sed -n 1,2p | paste -sd' ')"
 expect "bash: a number" "" "$(bash_offers cairn segment --threads '')"
 expect "bash: commands" "$(printf '%s\n' "${commands[@]}" | sort | paste -sd' ')" \
   "$(bash_offers cairn '' | tr ' ' '\n' | grep -v '^-' | paste -sd' ')"

@@ -105,7 +105,7 @@ expected="RELEASE_NOTES.md SHA256SUMS THIRD_PARTIES.md cairn-$version.tar.gz cai
 [[ $(cat "$made/RELEASE_NOTES.md") == $'## ['"$version"$'] - 2026-01-02\n\n- A line.' ]] || fail "other notes: $(cat "$made/RELEASE_NOTES.md")"
 grep -q '^| libc6 | [0-9]' "$made/THIRD_PARTIES.md" || fail "libc6 is not among the third parties"
 ! grep -q '^| libcairn0 ' "$made/THIRD_PARTIES.md" || fail "cairn is among the third parties"
-tar -tzf "$made/cairn_ros-$version.tar.gz" | grep -qx "cairn_ros-$version/ros2/package.xml" || fail "no ros2/package.xml"
+grep -qx "cairn_ros-$version/ros2/package.xml" <<<"$(tar -tzf "$made/cairn_ros-$version.tar.gz")" || fail "no ros2/package.xml"
 before=$(sha256sum <"$made/cairn-$version.tar.gz")
 code=0
 "$repo/packaging/release.sh" 2>"$scratch/err" || code=$?
