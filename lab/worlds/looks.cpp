@@ -10,8 +10,6 @@
 namespace cairn::worlds {
 namespace {
 
-constexpr int kImageSide = 256;
-
 std::uint32_t hash(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t seed) {
   std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8DA6B343U ^
                     static_cast<std::uint32_t>(y) * 0xD8163841U ^

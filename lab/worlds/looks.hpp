@@ -35,6 +35,8 @@ enum class Pattern : std::uint8_t {
   carpet,       // a rectangle with a border on a plain floor
 };
 
+inline constexpr int kImageSide = 256;  // px, a power of two
+
 /// Parameters of a texture; cheap to copy.
 struct Look {
   Pattern pattern = Pattern::plain;
@@ -50,7 +52,8 @@ struct Look {
   Vec2 turn{1, 0};          // cosine and sine of the pattern's direction
   Vec3 axis{0, 0, 1};
   std::uint32_t seed = 0;
-  std::shared_ptr<const std::vector<std::array<std::uint8_t, 3>>> image;  // of dead leaves; periodic
+  std::shared_ptr<const std::vector<std::array<std::uint8_t, 3>>>
+      image;  // of dead leaves, and of models: kImageSide², periodic, gamma 2
 };
 
 /// For a thing or one of its parts: half of them are plain or two-tone.

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include "lab/worlds/frames.hpp"
+
+#include <algorithm>
+#include <cairn/core/error.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace cairn::worlds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Like a camera that meters the whole image, without its brightest parts.
+float metered(const Picture& picture) {
+  double sum = 0;
+  for (const Vec3& c : picture.colour)
+    sum += std::min(0.3 * double{c.x} + 0.59 * double{c.y} + 0.11 * double{c.z}, 2.0);
+  return static_cast<float>(sum / static_cast<double>(picture.colour.size()));
+}
+
+/// A multiple of 16 above the largest disparity, as in the data sets.
+int disparities_of(const Truth& truth) {
+  float most = 0;
+  for (int y = 0; y < truth.disparity_px.height(); ++y) {
+    const float* const row = truth.disparity_px.row(y);
+    most = std::max(most, *std::max_element(row, row + truth.disparity_px.width()));
+  }
+  return std::clamp((static_cast<int>(most) / 16 + 1) * 16, 16, 512);
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw Error(file.string() + ": cannot be written");
+}
+
+}  // namespace
+
+WorldFrame make_frame(const WorldOptions& options, int index, int samples) {
+  WorldFrame frame{make_world(options, index), {}, {}, {}};
+  Rendered rendered = render(frame.world.scene, samples);
+  Sensor& sensor = frame.world.sensor;
+  sensor.exposure /= std::max(metered(rendered.left), 1e-4F);
+  frame.left = expose(rendered.left, sensor, false, frame.world.scene.seed);
+  frame.right = expose(rendered.right, sensor, true, frame.world.scene.seed);
+  frame.truth = std::move(rendered.truth);
+  return frame;
+}
+
+void write_frame(const WorldFrame& frame, const fs::path& folder) {
+  const fs::path unfinished = folder.string() + ".unfinished";
+  fs::remove_all(unfinished);
+  fs::create_directories(unfinished);
+  io::save_png(unfinished / "left.png", View<const Rgb>(frame.left));
+  io::save_png(unfinished / "right.png", View<const Rgb>(frame.right));
+  const Truth& truth = frame.truth;
+  Image<std::uint16_t> disparity(truth.ids.size());
+  for (int y = 0; y < disparity.height(); ++y) {
+    for (int x = 0; x < disparity.width(); ++x)
+      disparity(x, y) =
+          static_cast<std::uint16_t>(std::clamp(std::lround(256 * truth.disparity_px(x, y)), 0L, 65535L));
+  }
+  io::save_png(unfinished / "disp_left.png", View<const std::uint16_t>(disparity));
+  io::save_png(unfinished / "objects.png", View<const std::uint8_t>(truth.ids));
+  io::save_png(unfinished / "occlusion.png", View<const std::uint8_t>(truth.occlusion));
+  io::save_png(unfinished / "ground.png", View<const std::uint8_t>(truth.ground));
+  const Rig& rig = frame.world.scene.rig;
+  std::ostringstream calib;
+  calib << "fx=" << rig.focal_px << "\nfy=" << rig.focal_px << "\ncx=" << rig.cx_px << "\ncy=" << rig.cy_px
+        << "\nbaseline=" << rig.baseline_m << "\nwidth=" << rig.size.width << "\nheight=" << rig.size.height
+        << "\nndisp=" << disparities_of(truth) << "\n";
+  write_text(unfinished / "calib.txt", calib.str());
+  nlohmann::ordered_json scene{{"place", kPlaces.at(static_cast<std::size_t>(frame.world.place))},
+                               {"objects", nlohmann::json::array()}};
+  for (const Thing& thing : frame.world.things) {
+    scene["objects"].push_back({{"id", thing.id},
+                                {"kind", thing.kind},
+                                {"placed", thing.placed},
+                                {"size_m", {thing.size_m.x, thing.size_m.y, thing.size_m.z}}});
+  }
+  write_text(unfinished / "scene.json",
+             scene.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  fs::rename(unfinished, folder);
+}
+
+}  // namespace cairn::worlds

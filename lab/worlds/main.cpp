@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+//
+// worlds frames FIRST LAST -o DIR: writes frames of worlds; worlds sheet FIRST LAST -o FILE.png: a contact sheet.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cairn/core/error.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <mutex>
+#include <thread>
+
+#include "lab/worlds/frames.hpp"
+#include "lab/worlds/models.hpp"
+
+namespace cairn::worlds {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  WorldOptions world;
+  int first = 0;
+  int last = 0;
+  int samples = 9;
+  int threads = 0;
+  std::string size = "320x240";
+  std::string use = "fit";
+  std::string out;
+};
+
+/// Calls `work` for each number from first to last, on all threads.
+template <class Work>
+void for_each_world(const Arguments& arguments, const Work& work) {
+  std::atomic<int> next = arguments.first;
+  std::mutex mutex;
+  std::exception_ptr trouble;
+  std::vector<std::jthread> threads;
+  const int count = arguments.threads > 0
+                        ? arguments.threads
+                        : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  for (int t = 0; t < count; ++t) {
+    threads.emplace_back([&] {
+      try {
+        for (int i = next++; i <= arguments.last; i = next++) work(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        trouble = std::current_exception();
+        next = arguments.last + 1;
+      }
+    });
+  }
+  threads.clear();
+  if (trouble) std::rethrow_exception(trouble);
+}
+
+void write_frames(const Arguments& arguments) {
+  fs::create_directories(arguments.out);
+  for_each_world(arguments, [&](int i) {
+    std::array<char, 16> name{};
+    std::snprintf(name.data(), name.size(), "world_%05d", i);
+    const fs::path folder = fs::path(arguments.out) / name.data();
+    if (!fs::exists(folder)) write_frame(make_frame(arguments.world, i, arguments.samples), folder);
+  });
+}
+
+void draw_sheet(const Arguments& arguments) {
+  constexpr int kColumns = 6, kGap = 4;
+  constexpr std::array kColours{Rgb{80, 120, 230}, Rgb{230, 110, 70}, Rgb{70, 190, 90},  Rgb{220, 190, 60},
+                                Rgb{170, 90, 200}, Rgb{60, 190, 200}, Rgb{220, 90, 140}, Rgb{140, 140, 90}};
+  const Size size = arguments.world.size;
+  const int count = arguments.last - arguments.first + 1, rows = (count + kColumns - 1) / kColumns;
+  Image<Rgb> sheet({(size.width + kGap) * kColumns, (size.height + kGap) * 2 * rows}, Rgb{255, 255, 255}, {});
+  for_each_world(arguments, [&](int i) {
+    const WorldFrame frame = make_frame(arguments.world, i, arguments.samples);
+    const int k = i - arguments.first, left = k % kColumns * (size.width + kGap),
+              top = k / kColumns * 2 * (size.height + kGap);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        sheet(left + x, top + y) = frame.left(x, y);
+        const int id = frame.truth.ids(x, y);
+        const std::uint8_t behind = frame.truth.ground(x, y) != 0 ? 60 : 25;
+        sheet(left + x, top + size.height + y) =
+            id > 0 ? kColours.at(static_cast<std::size_t>(id) % kColours.size())
+                   : Rgb{behind, behind, behind};
+      }
+    }
+  });
+  io::save_png(arguments.out, View<const Rgb>(sheet));
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Worlds for the fit: rendered stereo pairs with truth");
+  app.require_subcommand(1);
+  Arguments arguments;
+  const auto declare = [&](const char* name, const char* help) {
+    CLI::App* const command = app.add_subcommand(name, help);
+    command->add_option("FIRST", arguments.first, "number of the first world")
+        ->required()
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("LAST", arguments.last, "number of the last one")
+        ->required()
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("-o", arguments.out, "folder of frames, or PNG file of the sheet")->required();
+    command->add_option("--seed", arguments.world.seed, "another seed draws other worlds")
+        ->capture_default_str();
+    command->add_option("--use", arguments.use, "families and models: fit or yardstick")
+        ->check(CLI::IsMember({"fit", "yardstick"}));
+    command->add_option("--outdoor", arguments.world.outdoor_share, "share of worlds outdoors")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    command->add_option("--size", arguments.size, "WIDTHxHEIGHT")->capture_default_str();
+    command->add_option("--samples", arguments.samples, "rays per pixel, a square number")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    command->add_option("--threads", arguments.threads, "0: one per processor")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    return command;
+  };
+  CLI::App* const frames =
+      declare("frames", "writes one folder per world; folders that exist are left as they are");
+  declare("sheet", "draws left images and ids");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    std::cerr << "worlds: " << error.what() << "\n";
+    return 2;
+  }
+  Size& size = arguments.world.size;
+  if (std::sscanf(arguments.size.c_str(), "%dx%d", &size.width, &size.height) != 2 ||
+      std::min(size.width, size.height) < 16 || std::max(size.width, size.height) > 4096) {
+    throw Error("--size " + arguments.size + ": expected WIDTHxHEIGHT, each side from 16 to 4096");
+  }
+  if (arguments.last < arguments.first) throw Error("LAST is less than FIRST");
+  arguments.world.use = arguments.use == "fit" ? Use::fit : Use::yardstick;
+  if (models_for(arguments.world.use).empty())
+    std::cerr << "worlds: sweethome3d-furniture is not installed: families of shapes alone, no models\n";
+  frames->parsed() ? write_frames(arguments) : draw_sheet(arguments);
+  return 0;
+}
+
+}  // namespace
+}  // namespace cairn::worlds
+
+int main(int argc, char** argv) {
+  try {
+    return cairn::worlds::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "worlds: " << error.what() << "\n";
+    return 2;
+  }
+}

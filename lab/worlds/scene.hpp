@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lab/worlds/families.hpp"
+#include "lab/worlds/render.hpp"
+
+namespace cairn::worlds {
+
+enum class Place : std::uint8_t { room, table, shelf, clutter, corridor, outdoor };
+inline constexpr std::array kPlaces{"room", "table", "shelf", "clutter", "corridor", "outdoor"};
+
+/// One thing of a world.
+struct Thing {
+  int id = 0;
+  std::string kind;
+  std::string placed;  // free, wall, on, touch, edge, inside, bars
+  Vec3 size_m;
+};
+
+/// What to draw worlds of.
+struct WorldOptions {
+  std::uint64_t seed = 1;
+  Use use = Use::fit;
+  Size size{320, 240};
+  double outdoor_share = 0.25;
+};
+
+struct World {
+  Place place = Place::room;
+  Scene scene;
+  Sensor sensor;
+  std::vector<Thing> things;
+};
+
+/// World number `index`: depends on the options and the index only.
+World make_world(const WorldOptions& options, int index);
+
+}  // namespace cairn::worlds

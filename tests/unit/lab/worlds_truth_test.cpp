@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cairn/io/calibration_files.hpp>
+#include <cairn/io/disparity_files.hpp>
+#include <cairn/io/image_files.hpp>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <thread>
+
+#include "lab/worlds/frames.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace cairn::worlds {
+namespace {
+
+/// Small worlds without the sensor's faults.
+WorldOptions small(double outdoor_share) {
+  WorldOptions options;
+  options.size = {96, 72};
+  options.outdoor_share = outdoor_share;
+  return options;
+}
+
+struct Traced {
+  World world;
+  Rendered seen;
+};
+
+Traced traced(const WorldOptions& options, int index, int samples) {
+  Traced made{make_world(options, index), {}};
+  made.world.scene.rig.right_row_offset_px = 0;
+  made.seen = render(made.world.scene, samples);
+  return made;
+}
+
+float grey(const Picture& picture, int x, int y) {
+  const Vec3 c = picture.colour[static_cast<std::size_t>(y * picture.size.width + x)];
+  return (c.x + c.y + c.z) / 3;
+}
+
+double share(int part, int all) {
+  return static_cast<double>(part) / std::max(1, all);
+}
+
+TEST(WorldTruth, TheRightImageShowsWhatTheDisparitySays) {
+  for (const double outdoor_share : {0.0, 1.0}) {
+    std::vector<double> with_truth, without;
+    for (int index = 0; index < 6; ++index) {
+      const auto [world, seen] = traced(small(outdoor_share), index, 16);
+      for (int y = 0; y < seen.left.size.height; ++y) {
+        for (int x = 0; x + 1 < seen.left.size.width; ++x) {
+          const float d = seen.truth.disparity_px(x, y);
+          if (seen.truth.occlusion(x, y) != 0 || d <= 0) continue;
+          const float at = static_cast<float>(x) - d;
+          const int left = static_cast<int>(std::floor(at));
+          if (left < 0) continue;
+          const float part = at - static_cast<float>(left);
+          const float there = (1 - part) * grey(seen.right, left, y) + part * grey(seen.right, left + 1, y);
+          const float here = grey(seen.left, x, y), scale = 0.02F + here;
+          with_truth.push_back(std::abs(here - there) / scale);
+          without.push_back(std::abs(here - grey(seen.right, std::max(0, left - 4), y)) / scale);
+        }
+      }
+    }
+    ASSERT_GT(with_truth.size(), 10'000U);
+    const auto median = [](std::vector<double>& values) {
+      std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+      return values[values.size() / 2];
+    };
+    const double right = median(with_truth), wrong = median(without);
+    EXPECT_LT(right, 0.08) << "outdoors " << outdoor_share;
+    EXPECT_LT(right, 0.7 * wrong) << "four pixels off is hardly worse, outdoors " << outdoor_share;
+  }
+}
+
+TEST(WorldTruth, WhatTheRightCameraSeesHasNothingInFront) {
+  int visible = 0, covered = 0, hidden = 0, explained = 0;
+  for (int index = 0; index < 16; ++index) {
+    const auto [world, seen] = traced(small(0.3), index, 1);
+    const Truth& truth = seen.truth;
+    for (int y = 0; y < truth.ids.height(); ++y) {
+      for (int x = 0; x < truth.ids.width(); ++x) {
+        const float d = truth.disparity_px(x, y), at = static_cast<float>(x) - d;
+        bool has_nearer = at < -0.5F;
+        for (int other = x + 1; other < truth.ids.width() && !has_nearer; ++other) {
+          const float nearer = truth.disparity_px(other, y);
+          has_nearer = nearer > d + 0.5F && std::abs(static_cast<float>(other) - nearer - at) < 0.4F;
+        }
+        const bool is_hidden = truth.occlusion(x, y) != 0;
+        (is_hidden ? hidden : visible) += 1;
+        if (has_nearer) (is_hidden ? explained : covered) += 1;
+      }
+    }
+  }
+  EXPECT_GT(hidden, visible / 50);
+  EXPECT_LT(share(covered, visible), 0.02);
+  // What only the right camera sees may hide a point, too.
+  EXPECT_GT(share(explained, hidden), 0.7);
+}
+
+TEST(WorldTruth, TheDisparityOfAFloorIsAPlane) {
+  int rooms = 0;
+  for (int index = 0; index < 24; ++index) {
+    const auto [world, seen] = traced(small(0), index, 1);
+    const Rig& rig = world.scene.rig;
+    const float floor_z = 0;
+    for (int y = 0; y < rig.size.height; ++y) {
+      for (int x = 0; x < rig.size.width; ++x) {
+        if (seen.truth.ground(x, y) == 0) continue;
+        const Vec3 ray = rig.forward + (static_cast<float>(x) - rig.cx_px) / rig.focal_px * rig.right +
+                         (static_cast<float>(y) - rig.cy_px) / rig.focal_px * rig.down;
+        if (ray.z > -0.02F) continue;
+        const float expected = rig.focal_px * rig.baseline_m * ray.z / (floor_z - rig.eye.z);
+        if (world.place == Place::table &&
+            std::abs(seen.truth.disparity_px(x, y) - expected) > 0.05F * expected)
+          continue;  // an edge
+        ASSERT_NEAR(seen.truth.disparity_px(x, y), expected, 0.002 * double{expected} + 1e-3)
+            << index << " at " << x << ", " << y;
+        ++rooms;
+      }
+    }
+  }
+  EXPECT_GT(rooms, 20'000);
+}
+
+TEST(WorldTruth, IdsAreThoseOfTheThings) {
+  std::set<std::string> ways;
+  int things = 0, empty = 0;
+  for (int index = 0; index < 60; ++index) {
+    const World world = make_world(small(0.25), index);
+    empty += world.things.empty() ? 1 : 0;
+    for (std::size_t k = 0; k < world.things.size(); ++k) {
+      EXPECT_EQ(world.things[k].id, static_cast<int>(k) + 1);
+      ways.insert(world.things[k].placed);
+      ++things;
+    }
+    std::set<int> of_bodies;
+    for (const Body& body : world.scene.bodies) of_bodies.insert(body.id);
+    EXPECT_EQ(of_bodies.size(), world.things.size() + 1) << "the background, and one body for each thing";
+  }
+  EXPECT_GT(things, 150);
+  EXPECT_GT(empty, 0);
+  for (const char* way : {"free", "wall", "on", "touch", "edge"}) EXPECT_TRUE(ways.contains(way)) << way;
+}
+
+TEST(Worlds, AreTheSameForTheSameNumberOnAnyThread) {
+  WorldOptions options = small(0.3);
+  const WorldFrame first = make_frame(options, 7, 4);
+  std::array<WorldFrame, 2> others;
+  {
+    std::vector<std::jthread> threads;
+    for (WorldFrame& other : others) threads.emplace_back([&] { other = make_frame(options, 7, 4); });
+  }
+  const auto differing = [&](const Image<Rgb>& a, const Image<Rgb>& b) {
+    int count = 0;
+    for (int y = 0; y < a.height(); ++y)
+      for (int x = 0; x < a.width(); ++x) count += a(x, y) == b(x, y) ? 0 : 1;
+    return count;
+  };
+  for (const WorldFrame& other : others) {
+    EXPECT_EQ(differing(first.left, other.left), 0);
+    EXPECT_EQ(differing(first.right, other.right), 0);
+  }
+  EXPECT_GT(differing(first.left, make_frame(options, 8, 4).left), 1000) << "another number";
+  options.use = Use::yardstick;
+  EXPECT_GT(differing(first.left, make_frame(options, 7, 4).left), 1000) << "another use";
+}
+
+TEST(Worlds, AreWrittenAsADataSetOfFrames) {
+  const support::TemporaryFolder folder;
+  const WorldFrame frame = make_frame(small(0), 3, 1);
+  write_frame(frame, folder.path() / "world");
+  const io::LoadedPair pair =
+      io::load_pair(folder.path() / "world" / "left.png", folder.path() / "world" / "right.png");
+  EXPECT_EQ(pair.left.gray.size(), frame.left.size());
+  const io::Calibration calibration = io::load_calibration(folder.path() / "world" / "calib.txt");
+  ASSERT_TRUE(calibration.rig.has_value());
+  EXPECT_NEAR(calibration.rig->baseline_m, frame.world.scene.rig.baseline_m, 1e-5);
+  const Image<float> disparity = io::load_disparity(folder.path() / "world" / "disp_left.png");
+  float most = 0;
+  for (int y = 0; y < disparity.height(); ++y) {
+    for (int x = 0; x < disparity.width(); ++x) {
+      most = std::max(most, frame.truth.disparity_px(x, y));
+      if (frame.truth.disparity_px(x, y) > 0 && frame.truth.disparity_px(x, y) < 255)
+        EXPECT_NEAR(disparity(x, y), frame.truth.disparity_px(x, y), 1.0 / 256);
+    }
+  }
+  EXPECT_GT(calibration.num_disparities.value_or(0), static_cast<int>(std::min(most, 500.0F)));
+}
+
+}  // namespace
+}  // namespace cairn::worlds
