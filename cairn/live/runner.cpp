@@ -37,7 +37,8 @@ Runner::Runner(input::Sequence& source, const std::string& source_name, const Se
       used_config_(first_config_),
       config_(first_config_) {
   validate(first_config_->segmentation, image_size_, has_rig_);
-  if (!options_.tracks) single_ = std::make_unique<ScenesAhead>(first_config_->segmentation, source.rig(), exec_);
+  if (!options_.tracks)
+    single_ = std::make_unique<ScenesAhead>(first_config_->segmentation, source.rig(), exec_);
 }
 
 Runner::~Runner() = default;
@@ -110,7 +111,6 @@ Runner::ReadPair Runner::read_next() {
   ReadPair read;
   try {
     auto pair = source_.next();
-    if (pair) wait_for_its_time(*pair);
     read.status = source_.status();
     if (pair) read.pair = std::make_shared<input::SequenceFrame>(std::move(*pair));
   } catch (...) {
@@ -124,6 +124,7 @@ std::shared_ptr<LiveFrame> Runner::next() {
   const ReadPair read = read_ahead_ ? *std::exchange(read_ahead_, std::nullopt) : read_next();
   if (read.trouble) std::rethrow_exception(read.trouble);
   if (!read.pair) return nullptr;
+  wait_for_its_time(*read.pair);
   // Of a camera, and of a file that is played at its pace, the next pair is not there yet.
   if (options_.pace == 0 && !read.status.is_live && !is_paused_) {
     read_ahead_ = read_next();

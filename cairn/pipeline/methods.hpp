@@ -47,7 +47,8 @@ using ObjectChoice = std::function<ChosenObjects(RegionCandidates& candidates, c
 Frame segment_by_region_tree(FrameInput in, const Run& run, const ObjectChoice& choose = {});
 /// Its two parts: no earlier frame influences the first one.
 RegionCandidates grow_candidates(FrameInput& in, const Run& run);
-Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Run& run, const ObjectChoice& choose);
+Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Run& run,
+                          const ObjectChoice& choose);
 /// The beginning of the first part …
 StereoMatch stereo_by_region_tree(FrameInput& in, const Run& run, StageClock& stage);
 /// … and the candidates up to the superpixels. Without a `network`, there are no hints: fitting adds its own.

@@ -68,13 +68,14 @@ RegionCandidates grow_candidates(FrameInput& in, const Run& run) {
     return estimate_confidence(found.match.matches, found.match.stereo.disparity,
                                confidence_model(run.config.match.method), concurrent);
   });
-  found.tree =
-      stage("grow_merge_tree", grow_merge_tree(found.superpixels, found.cues(in.left), merge_classifier(), exec));
+  found.tree = stage("grow_merge_tree",
+                     grow_merge_tree(found.superpixels, found.cues(in.left), merge_classifier(), exec));
   found.match.stereo.confidence = stage("estimate_confidence", confidence.get());
   return found;
 }
 
-Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Run& run, const ObjectChoice& choose) {
+Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Run& run,
+                          const ObjectChoice& choose) {
   const auto& [rig, config, exec] = run;
   const auto& [match, surface_disparity_px, background, superpixels, hints, tree] = found;
   StageClock stage(exec);

@@ -34,7 +34,9 @@ struct PairCopy {
   Image<Rgb> left_rgb;
 
   PairCopy(const StereoPair& from, const Pool& pool)
-      : left(copied(from.left(), pool)), right(copied(from.right(), pool)), left_rgb(copied(from.left_rgb(), pool)) {}
+      : left(copied(from.left(), pool)),
+        right(copied(from.right(), pool)),
+        left_rgb(copied(from.left_rgb(), pool)) {}
   [[nodiscard]] StereoPair pair() const { return StereoPair::from(left, right, left_rgb); }
   [[nodiscard]] bool equals(const StereoPair& pair) const {
     return is_equal<Gray>(left, pair.left()) && is_equal<Gray>(right, pair.right()) &&
@@ -63,7 +65,9 @@ struct ScenesAhead::Begun {
 
   void start(const std::optional<StereoRig>& rig, Exec exec, bool is_observed) {
     if (is_observed)
-      exec.observe = [this](std::string_view stage, const StageResult&, double ms) { times.emplace_back(stage, ms); };
+      exec.observe = [this](std::string_view stage, const StageResult&, double ms) {
+        times.emplace_back(stage, ms);
+      };
     done = std::async(std::launch::async, [this, rig, exec = std::move(exec)] {
       const Run run{rig, *config, exec};
       if (config->pipeline.method == Method::paper) {

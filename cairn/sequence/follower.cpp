@@ -81,7 +81,8 @@ void Follower::set_config(FollowConfig config) {
     return all;
   };
   const bool is_same = values(config) == values(config_);
-  const bool is_same_floor = config.segmentation.ground.known == config_.segmentation.ground.known;  // no option
+  const bool is_same_floor =
+      config.segmentation.ground.known == config_.segmentation.ground.known;  // no option
   config_ = std::move(config);
   if (!is_same || !is_same_floor) ahead_->set_config(config_.segmentation);
   if (!is_same) begin_control();

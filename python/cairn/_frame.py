@@ -172,8 +172,14 @@ class Segmenter:
     def __init__(self, rig: RigLike = None, *, preset: str = "default", config: Union[Config, PathLike, None] = None,
                  exec: Optional[Exec] = None, **options) -> None:
         """The arguments are those of segment()."""
-        self._config, self._calibration = config_of(config, preset, options), rig
-        self._data = _cairn.SegmenterData(self._config, rig, exec)
+        self.__setstate__((config_of(config, preset, options), rig, exec))
+
+    def __getstate__(self):
+        return self._config, self._calibration, self._exec
+
+    def __setstate__(self, state):
+        self._config, self._calibration, of_images = state
+        self._data = _cairn.SegmenterData(self._config, self._calibration, of_images)
         self._exec = self._data.exec
 
     def segment(self, left: ImageLike, right: ImageLike, *, bgr: bool = False) -> Frame:

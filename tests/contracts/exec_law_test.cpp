@@ -206,8 +206,9 @@ TEST(ExecLaw, FramesBegunEarlyChangeNoBit) {
   const std::array<samples::Sample, 3> different{samples::load("overlap"), samples::load("four_in_a_row"),
                                                  samples::load("dim_light")};
   // As a loop over frames does; pairs that are never asked for; more than may be begun; none; the same one twice.
-  const std::vector<Asked> loop = {{{1}, {0}}, {{2}, {1}}, {{0}, {2}}, {{1, 2}, {0}}, {{0}, {1}}, {{1, 2, 0, 1}, {2}},
-                                   {{}, {0, 1}}, {{2, 2}, {2, 2}}, {{0}, {1}}, {{}, {2}}};
+  const std::vector<Asked> loop = {
+      {{1}, {0}},          {{2}, {1}},   {{0}, {2}},       {{1, 2}, {0}}, {{0}, {1}},
+      {{1, 2, 0, 1}, {2}}, {{}, {0, 1}}, {{2, 2}, {2, 2}}, {{0}, {1}},    {{}, {2}}};
   for (const Config& preset : {Config(), Config::paper()}) {
     for (const int threads : {1, 2, 5}) {
       SCOPED_TRACE(std::to_string(threads) + " threads");

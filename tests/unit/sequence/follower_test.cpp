@@ -62,7 +62,9 @@ TEST(Follower, AStaticCameraGivesStaticObjectsStableIds) {
 
 TEST(Follower, FramesBegunEarlyAreDroppedWhenOptionsChange) {
   const std::array different{samples::load("four_in_a_row"), samples::load("overlap")};
-  const auto sample = [&](int k) -> const samples::Sample& { return different.at(static_cast<std::size_t>(k % 2)); };
+  const auto sample = [&](int k) -> const samples::Sample& {
+    return different.at(static_cast<std::size_t>(k % 2));
+  };
   const auto follow = [&](bool begins_early) {
     Follower follower(config_for(different[0]), different[0].calibration.rig, Exec::with_threads(2));
     std::vector<TrackedFrame> steps;
@@ -79,7 +81,8 @@ TEST(Follower, FramesBegunEarlyAreDroppedWhenOptionsChange) {
   };
   const std::vector<TrackedFrame> expected = follow(false);
   const std::vector<TrackedFrame> found = follow(true);
-  EXPECT_LT(expected[4].frame.objects.list.size(), expected[2].frame.objects.list.size()) << "the option has no effect";
+  EXPECT_LT(expected[4].frame.objects.list.size(), expected[2].frame.objects.list.size())
+      << "the option has no effect";
   for (std::size_t k = 0; k < expected.size(); ++k) {
     SCOPED_TRACE(k);
     EXPECT_EQ(found[k].map_from_camera.translation_m.x, expected[k].map_from_camera.translation_m.x);
@@ -88,7 +91,7 @@ TEST(Follower, FramesBegunEarlyAreDroppedWhenOptionsChange) {
       EXPECT_EQ(found[k].frame.objects.list[i].box_px, expected[k].frame.objects.list[i].box_px);
     ASSERT_EQ(found[k].tracks.list.size(), expected[k].tracks.list.size());
     for (std::size_t i = 0; i < expected[k].tracks.list.size(); ++i)
-      EXPECT_EQ(found[k].tracks.list[i].position_in_map_m, expected[k].tracks.list[i].position_in_map_m);
+      EXPECT_EQ(found[k].tracks.list[i].position_m, expected[k].tracks.list[i].position_m);
   }
 }
 
