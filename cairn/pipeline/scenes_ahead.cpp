@@ -64,10 +64,11 @@ struct ScenesAhead::Begun {
       : images(pair, pool), config(std::move(used)), turn(number), in(FrameInput::from(images.pair())) {}
 
   void start(const std::optional<StereoRig>& rig, Exec exec, bool is_observed) {
-    if (is_observed)
+    if (is_observed) {
       exec.observe = [this](std::string_view stage, const StageResult&, double ms) {
         times.emplace_back(stage, ms);
       };
+    }
     done = std::async(std::launch::async, [this, rig, exec = std::move(exec)] {
       const Run run{rig, *config, exec};
       if (config->pipeline.method == Method::paper) {

@@ -67,7 +67,8 @@ int rows_of_band(const SearchLayout& layout) {
 }
 
 void follow_paths(const SemiGlobalTask& task, const SemiGlobalKernels& run, const Exec& exec) {
-  const auto [width, height] = task.left.size();
+  const int width = task.layout.width;
+  const int height = task.layout.height;
   const auto columns = [&](const auto& work) { parallel_for(exec, width, kMinColumns, work); };
   parallel_for(exec, height, 16, [&](int first, int last) { run.describe_rows(task, first, last); });
   columns([&](int first, int last) { run.match_down(task, first, last); });
