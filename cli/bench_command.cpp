@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/statistics.hpp>
 #include <cairn/core/target.hpp>
@@ -43,6 +44,7 @@ struct BenchOptions {
   bool no_opencv = false;
   std::optional<std::string> json;
   std::optional<double> budget_hz;
+  std::optional<std::string> report;
   bool has_preset = false;  // on the command line or in --config
 };
 
@@ -258,8 +260,12 @@ std::string summary(const Findings& found) {
   const auto megabytes = [](std::int64_t bytes) {
     return text_of("%.1f MB", 1e-6 * static_cast<double>(bytes));
   };
-  return "speed       " + text_of("%.1f frames per second", 1000 / median_wall(times.frame)) + "; " +
-         std::to_string(times.objects) + " objects\n" + "memory      " + megabytes(times.pool_bytes) +
+  const std::string overlapping =
+      times.overlapping_ms > 0 ? text_of("; %.1f if they overlap, with ", 1000 / times.overlapping_ms) +
+                                     megabytes(times.overlapping_pool_bytes) + " for images"
+                               : "";
+  return "speed       " + text_of("%.1f frames per second", 1000 / median_wall(times.frame)) + overlapping +
+         "; " + std::to_string(times.objects) + " objects\n" + "memory      " + megabytes(times.pool_bytes) +
          " peak for images, " + megabytes(found.times.resident_bytes) + " for the whole process; " +
          std::to_string(times.first_allocations) + " image buffers allocated in the first frame, " +
          std::to_string(times.later_allocations) + " in later ones\n";
@@ -368,7 +374,7 @@ Json accuracy_json(const Findings& found) {
 }
 
 /// The content of the --json file (docs/formats.md).
-std::string bench_json(const Findings& found) {
+Json bench_json(const Findings& found) {
   const Subject& subject = found.subject;
   const FrameTimes& times = found.times;
   Json targets = Json::array();
@@ -394,6 +400,10 @@ std::string bench_json(const Findings& found) {
   j["disparity"] = json(times.disparity);
   j["frame"] = json(times.frame);
   j["frames_per_second"] = json(1000 / median_wall(times.frame));
+  if (times.overlapping_ms > 0) {
+    j["overlapping"] = {{"frames_per_second", json(1000 / times.overlapping_ms)},
+                        {"pool_bytes", times.overlapping_pool_bytes}};
+  }
   j["objects"] = times.objects;
   j["memory"] = {{"pool_bytes", times.pool_bytes},
                  {"resident_bytes", found.times.resident_bytes},
@@ -401,8 +411,61 @@ std::string bench_json(const Findings& found) {
                  {"later_allocations", times.later_allocations}};
   j["opencv"] = opencv_json(found);
   j["accuracy"] = accuracy_json(found);
+  return j;
+}
+
+void write_json(const std::string& file, const Json& json) {
   // A file name that is not UTF-8 is not an error.
-  return output::json_text(j, 1) + "\n";
+  io::write_file(file, output::json_text(json, 1) + "\n");
+}
+
+Findings measured(Subject subject, const Exec& exec, const timing::Limits& limits, bool has_opencv) {
+  timing::set_opencv_threads(exec.threads());
+  const auto peers = has_opencv ? timing::quick_opencv_matchers() : std::span<const timing::OpenCvMatcher>();
+  Findings found{std::move(subject), exec, {}, {}};
+  found.times =
+      timing::time_frames(found.subject.pair(), found.subject.rig, found.subject.config, exec, limits, peers);
+  found.accuracies = accuracies_of(found.subject, found.times);
+  return found;
+}
+
+// ---- other measurements ----
+
+/// Both presets at three usual sizes, with one thread and with all.
+int report_machine(BenchOptions options) {
+  struct Run {
+    const char* size;
+    const char* disparities;
+  };
+  constexpr std::array kRuns{Run{"320x240", "64"}, Run{"640x480", "64"}, Run{"1280x720", "128"}};
+  constexpr timing::Limits kOfARun{.frames = 100, .seconds = 4};
+  std::vector<int> thread_counts{1};
+  if (const int all = make_exec(options.exec).threads(); all > 1) thread_counts.push_back(all);
+  Table table({"preset", "size", "threads", "median ms", "p99 ms", "overlapping", "images"});
+  Json runs = Json::array();
+  for (const auto& [size, disparities] : kRuns) {
+    for (const char* const preset : {"default", "paper"}) {
+      options.size = size;
+      options.input.config.preset = preset;
+      options.input.config.sets = {std::string("match.num_disparities=") + disparities};
+      for (const int threads : thread_counts) {
+        const Exec exec = Exec::with_threads(threads, make_exec(options.exec).target);
+        const Findings found = measured(draw(options), exec, limits_of(options, kOfARun), !options.no_opencv);
+        const Quantiles wall = quantiles(found.times.frame.wall_ms);
+        table.add({preset, std::string(size) + "x" + disparities, std::to_string(threads), ms(wall.median),
+                   ms(wall.p99), found.times.overlapping_ms > 0 ? ms(found.times.overlapping_ms) : "",
+                   text_of("%.0f MB", 1e-6 * static_cast<double>(found.times.pool_bytes))});
+        runs.push_back(bench_json(found));
+      }
+    }
+  }
+  write_json(*options.report, {{"cairn", CAIRN_VERSION}, {"processor", timing::processor()}, {"runs", runs}});
+  std::cout << table.text()
+            << "\noverlapping: ms per frame where each is begun during the one before, as follow does.\n"
+            << *options.report
+            << ": attach it to an issue; it holds times, the processor's name and nothing else of "
+            << "this machine.\n";
+  return 0;
 }
 
 int report_budget(const BenchOptions& options, const Exec& exec) {
@@ -410,30 +473,29 @@ int report_budget(const BenchOptions& options, const Exec& exec) {
   Budget budget{*options.budget_hz, size_of(options), {"default", "paper"}, limits_of(options, kOfATrial)};
   if (options.has_preset) budget.presets = {options.input.config.preset};
   const BudgetReport report = sizes_within_budget(budget, options.input.config, exec);
-  if (options.json) io::write_file(*options.json, output::json_text(report.json, 1) + "\n");
+  if (options.json) write_json(*options.json, report.json);
   std::cout << report.text;
   return 0;
 }
 
 int bench(const BenchOptions& options, bool drawn) {
   (void)resolve(options.input.config);
-  Findings found;
-  found.exec = make_exec(options.exec);
-  if (options.budget_hz) {
-    if (!drawn) throw Error("--budget: is for the pair that the program draws; leave LEFT and RIGHT out");
+  if (options.budget_hz || options.report) {
+    const std::string option = options.report ? "--report" : "--budget";
+    if (!drawn) throw Error(option + ": is for the pair that the program draws; leave LEFT and RIGHT out");
     refuse_what_needs_a_pair(options);
-    return report_budget(options, found.exec);
   }
-  found.subject = drawn ? draw(options) : load(options, found.exec);
-  const Subject& subject = found.subject;
+  if (options.report) {
+    if (options.has_preset || !options.input.config.sets.empty())
+      throw Error("--report: measures both presets as they are; leave --preset, --config and --set out");
+    return report_machine(options);
+  }
+  const Exec exec = make_exec(options.exec);
+  if (options.budget_hz) return report_budget(options, exec);
   constexpr timing::Limits kByDefault{.frames = 100, .seconds = 10};
-  timing::set_opencv_threads(found.exec.threads());
-  const auto peers =
-      options.no_opencv ? std::span<const timing::OpenCvMatcher>() : timing::quick_opencv_matchers();
-  found.times = timing::time_frames(subject.pair(), subject.rig, subject.config, found.exec,
-                                    limits_of(options, kByDefault), peers);
-  found.accuracies = accuracies_of(subject, found.times);
-  if (options.json) io::write_file(*options.json, bench_json(found));
+  const Findings found = measured(drawn ? draw(options) : load(options, exec), exec,
+                                  limits_of(options, kByDefault), !options.no_opencv);
+  if (options.json) write_json(*options.json, bench_json(found));
   std::cout << heading(found) << "\n" << stage_table(found.times) << "\n" << summary(found);
   if (!options.no_opencv) std::cout << "\n" << peer_table(found);
   std::cout << accuracy_table(found);
@@ -466,7 +528,17 @@ Work declare_bench(CLI::App& app) {
                  "find the sizes at which each preset reaches this rate on this machine")
       ->check(CLI::Range(0.01, 10'000.0).name(""))
       ->type_name("HZ");
-  app.add_option("--json", options->json, "JSON file for all measurements")->type_name("FILE");
+  CLI::Option* const budget = app.get_option("--budget");
+  app.add_option(
+         "--report", options->report,
+         "time both presets at three sizes, with one thread and with all, and write the measurements of this "
+         "machine to a JSON file that you can mail")
+      ->excludes(budget)
+      ->excludes(app.get_option("--size"))
+      ->type_name("FILE");
+  app.add_option("--json", options->json, "JSON file for all measurements")
+      ->excludes(app.get_option("--report"))
+      ->type_name("FILE");
   app.footer(
       "Without LEFT and RIGHT a room is rendered: the same pixels on every machine.\n"
       "Without --frames and --seconds: 100 frames, or as many as fit in 10 seconds.\n"

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <new>
 #include <utility>
+#include <vector>
 
 namespace cairn {
 namespace {
@@ -25,7 +26,7 @@ struct Pool::Buffer::Store {
   std::multimap<std::size_t, std::byte*> free;  // by size
   std::int64_t heap_allocations = 0;
   std::int64_t bytes = 0;
-  Pool beside;
+  std::vector<Pool> beside;
 
   Store() = default;
   Store(const Store&) = delete;
@@ -79,11 +80,11 @@ Pool Pool::make() {
   return pool;
 }
 
-Pool Pool::beside() const {
+Pool Pool::beside(std::size_t which) const {
   if (!store_) return {};
   const std::lock_guard lock(store_->mutex);
-  if (!store_->beside.store_) store_->beside = make();
-  return store_->beside;
+  while (store_->beside.size() <= which) store_->beside.push_back(make());
+  return store_->beside[which];
 }
 
 Pool::Buffer Pool::take(std::size_t bytes) const {
@@ -106,13 +107,17 @@ Pool::Buffer Pool::take(std::size_t bytes) const {
 std::int64_t Pool::heap_allocations() const {
   if (!store_) return 0;
   const std::lock_guard lock(store_->mutex);
-  return store_->heap_allocations + store_->beside.heap_allocations();
+  std::int64_t all = store_->heap_allocations;
+  for (const Pool& pool : store_->beside) all += pool.heap_allocations();
+  return all;
 }
 
 std::int64_t Pool::bytes() const {
   if (!store_) return 0;
   const std::lock_guard lock(store_->mutex);
-  return store_->bytes + store_->beside.bytes();
+  std::int64_t all = store_->bytes;
+  for (const Pool& pool : store_->beside) all += pool.bytes();
+  return all;
 }
 
 }  // namespace cairn

@@ -40,10 +40,10 @@ class Pool {
   /// A new, empty store.
   static Pool make();
 
-  /// A second store for concurrent work, the same one on every call, so that the buffers found in either do
-  /// not depend on timing. Its counts are included in those of this pool. Without a store, the result has
-  /// none either.
-  [[nodiscard]] Pool beside() const;
+  /// Another store for concurrent work, the same one on every call with this number ≥ 0, so that the buffers found in
+  /// any of them do not depend on timing. Its counts are included in those of this pool. Without a store, the result
+  /// has none either.
+  [[nodiscard]] Pool beside(std::size_t which = 0) const;
 
   /// A buffer of at least `bytes`, contents undefined.
   [[nodiscard]] Buffer take(std::size_t bytes) const;

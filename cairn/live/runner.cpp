@@ -3,8 +3,7 @@
 #include <cairn/live/runner.hpp>
 
 #include <cairn/core/error.hpp>
-#include <cairn/pipeline/segment.hpp>
-#include <exception>
+#include <cairn/pipeline/scenes_ahead.hpp>
 #include <thread>
 #include <utility>
 
@@ -38,7 +37,11 @@ Runner::Runner(input::Sequence& source, const std::string& source_name, const Se
       used_config_(first_config_),
       config_(first_config_) {
   validate(first_config_->segmentation, image_size_, has_rig_);
+  if (!options_.tracks)
+    single_ = std::make_unique<ScenesAhead>(first_config_->segmentation, source.rig(), exec_);
 }
+
+Runner::~Runner() = default;
 
 bool Runner::is_over() const {
   return is_stopped_ || (options_.is_ended && options_.is_ended()) ||
@@ -86,7 +89,7 @@ LiveSummary Runner::run() {
     if (options_.every_frame) {
       while (const LiveFramePtr frame = next()) offer(frame);
     } else {
-      while (PairPtr pair = newest(slot)) offer(work(std::move(pair)));
+      while (PairPtr pair = newest(slot)) offer(work(std::move(pair), source_.status()));
     }
   } catch (...) {
     const std::exception_ptr first = std::current_exception();
@@ -104,29 +107,82 @@ LiveSummary Runner::run() {
           latencies_.max_ms()};
 }
 
-std::shared_ptr<LiveFrame> Runner::next() {
-  if (is_over()) return nullptr;
-  auto pair = source_.next();
-  if (!pair) return nullptr;
-  wait_for_its_time(*pair);
-  return work(std::make_shared<input::SequenceFrame>(std::move(*pair)));
+Runner::ReadPair Runner::read_next() {
+  ReadPair read;
+  try {
+    auto pair = source_.next();
+    read.status = source_.status();
+    if (pair) read.pair = std::make_shared<input::SequenceFrame>(std::move(*pair));
+  } catch (...) {
+    read.trouble = std::current_exception();
+  }
+  return read;
 }
 
-/// The newest pair that is not too old; null at the end.
+std::shared_ptr<LiveFrame> Runner::next() {
+  if (is_over()) return nullptr;
+  const ReadPair read = read_ahead_ ? *std::exchange(read_ahead_, std::nullopt) : read_next();
+  if (read.trouble) std::rethrow_exception(read.trouble);
+  if (!read.pair) return nullptr;
+  wait_for_its_time(*read.pair);
+  // Of a camera, and of a file that is played at its pace, the next pair is not there yet.
+  if (options_.pace == 0 && !read.status.is_live && !is_paused_) {
+    read_ahead_ = read_next();
+    if (read_ahead_->pair) prefetch(*read_ahead_->pair);
+  }
+  return work(read.pair, read.status);
+}
+
+void Runner::prefetch(const input::SequenceFrame& pair) {
+  if (options_.step) return;
+  if (single_) {
+    single_->begin(StereoPair::from(pair.left.gray, pair.right, pair.left.rgb));
+  } else {
+    follow_.prefetch(pair);
+  }
+}
+
+/// The newest pair that is not too old, or the one that is begun already; null at the end.
 Runner::PairPtr Runner::newest(NewestSlot<PairPtr>& slot) {
+  const auto is_young = [&](const input::SequenceFrame& pair) {
+    return !options_.max_age || !pair.arrived || Clock::now() - *pair.arrived <= *options_.max_age;
+  };
+  {
+    const std::lock_guard lock(prefetched_mutex_);
+    is_working_ = false;
+  }
   while (!is_over()) {
-    const PairPtr pair = slot.take(kNotice).value_or(nullptr);
+    PairPtr pair;
+    {
+      const std::lock_guard lock(prefetched_mutex_);
+      pair = std::exchange(prefetched_, nullptr);
+    }
+    if (!pair) pair = slot.take(kNotice).value_or(nullptr);
     if (!pair && slot.is_closed()) return nullptr;
     drops_.replaced = slot.replaced();
     if (!pair) continue;
-    if (!options_.max_age || !pair->arrived || Clock::now() - *pair->arrived <= *options_.max_age) {
-      pair->after_gap = pair->after_gap || std::exchange(is_after_gap_, false);
-      return pair;
+    if (!is_young(*pair)) {
+      ++drops_.too_old;
+      is_after_gap_ = is_after_gap_ || pair->after_gap;
+      continue;
     }
-    ++drops_.too_old;
-    is_after_gap_ = is_after_gap_ || pair->after_gap;
+    pair->after_gap = pair->after_gap || std::exchange(is_after_gap_, false);
+    const std::lock_guard lock(prefetched_mutex_);
+    is_working_ = true;
+    if (exec_.threads() > 1) prefetched_ = slot.take(0ns).value_or(nullptr);
+    if (prefetched_) prefetch(*prefetched_);
+    return pair;
   }
   return nullptr;
+}
+
+/// Takes a pair that arrives while a frame is at work, and no other has been begun: the threads share both frames.
+bool Runner::begins_early(input::SequenceFrame& pair) {
+  const std::lock_guard lock(prefetched_mutex_);
+  if (exec_.threads() == 1 || !is_working_ || prefetched_) return false;
+  prefetched_ = std::make_shared<input::SequenceFrame>(std::move(pair));
+  prefetch(*prefetched_);
+  return true;
 }
 
 /// On its own thread, so that the source never waits.
@@ -136,6 +192,7 @@ void Runner::read_source(NewestSlot<PairPtr>& slot) {
     if (!pair) return;
     wait_for_its_time(*pair);
     if (!pair->arrived) pair->arrived = Clock::now();
+    if (begins_early(*pair)) continue;
     // A gap before a dropped pair counts for the next one.
     slot.put(
         std::make_shared<input::SequenceFrame>(std::move(*pair)),
@@ -174,12 +231,11 @@ TrackedFrame Runner::step_of(const input::SequenceFrame& pair) {
   step.index = frames_;
   step.stamp = pair.stamp;
   step.is_lost = true;
-  step.frame = segment(StereoPair::from(pair.left.gray, pair.right, pair.left.rgb), source_.rig(),
-                       used_config_->segmentation, exec_);
+  step.frame = single_->segment(StereoPair::from(pair.left.gray, pair.right, pair.left.rgb));
   return step;
 }
 
-std::shared_ptr<LiveFrame> Runner::work(PairPtr pair) {
+std::shared_ptr<LiveFrame> Runner::work(PairPtr pair, const input::SourceStatus& status) {
   take_config();
   auto frame = std::make_shared<LiveFrame>();
   frame->started = Clock::now();
@@ -195,7 +251,7 @@ std::shared_ptr<LiveFrame> Runner::work(PairPtr pair) {
   frame->pair = std::move(pair);
   frame->done = Clock::now();
   frame->stages = stages_;
-  frame->source = source_.status();
+  frame->source = status;
   drops_.at_source = frame->source.dropped + frame->source.unpaired;
   frame->drops = drops_;
   frame->config = used_config_;
@@ -223,6 +279,7 @@ void Runner::take_config() {
   const std::lock_guard lock(mutex_);
   if (revision_ == used_revision_) return;
   follow_.set_config(*config_);
+  if (single_) single_->set_config(config_->segmentation);
   used_config_ = config_;
   used_revision_ = revision_;
 }

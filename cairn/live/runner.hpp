@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <deque>
+#include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -14,6 +16,10 @@
 #include <cairn/live/latencies.hpp>
 #include <cairn/live/live_frame.hpp>
 #include <cairn/live/newest_slot.hpp>
+
+namespace cairn {
+class ScenesAhead;  // private to the library
+}
 
 namespace cairn::live {
 
@@ -57,6 +63,9 @@ class Runner {
   /// `source` and the sinks must outlive it. Throws Error like SequenceRun.
   Runner(input::Sequence& source, const std::string& source_name, const SensorFiles& files,
          FollowConfig config, LiveOptions options, const Exec& exec);
+  ~Runner();
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
   void add(Sink& sink) { sinks_.push_back(&sink); }
 
   /// Runs until the source ends, the duration is over, or stop(). Throws Error for a frame that does not fit.
@@ -97,11 +106,21 @@ class Runner {
   using PairPtr = std::shared_ptr<input::SequenceFrame>;
 
   [[nodiscard]] bool is_over() const;
+  /// A pair that is read, with the status of its source then; or why none could be.
+  struct ReadPair {
+    PairPtr pair;
+    input::SourceStatus status;
+    std::exception_ptr trouble;
+  };
   void read_source(NewestSlot<PairPtr>& slot);
   void wait_for_its_time(const input::SequenceFrame& pair);
+  ReadPair read_next();
   PairPtr newest(NewestSlot<PairPtr>& slot);
+  bool begins_early(input::SequenceFrame& pair);
+  /// Begins a pair while the frame before it is at work.
+  void prefetch(const input::SequenceFrame& pair);
   TrackedFrame step_of(const input::SequenceFrame& pair);
-  std::shared_ptr<LiveFrame> work(PairPtr pair);
+  std::shared_ptr<LiveFrame> work(PairPtr pair, const input::SourceStatus& status);
   void judge(LiveFrame& frame, const input::SequenceFrame& pair);
   void take_config();
   void take_over(const std::optional<ControlEvent>& control);
@@ -114,6 +133,11 @@ class Runner {
   std::vector<output::StageTime> stages_;
   Exec exec_;
   SequenceRun follow_;
+  std::unique_ptr<ScenesAhead> single_;  // without tracks
+  std::optional<ReadPair> read_ahead_;   // by next(), of a file that is not played at its pace
+  std::mutex prefetched_mutex_;          // of the next two
+  PairPtr prefetched_;                   // by run(): not to be replaced by a newer one
+  bool is_working_ = false;
   std::shared_ptr<const FollowConfig> first_config_;
   std::shared_ptr<const FollowConfig> used_config_;
   std::uint64_t used_revision_ = 0;

@@ -97,6 +97,10 @@ TrackedFrame SequenceRun::next(const input::SequenceFrame& frame) {
   return step;
 }
 
+void SequenceRun::prefetch(const input::SequenceFrame& frame) {
+  follower_.prefetch(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb));
+}
+
 void SequenceRun::mark(const TrackedFrame& step, const input::SequenceFrame& frame) {
   const bool writes = map_ && !is_map_read_only_;
   if (!has_begun_) begin_run(step.stamp, map_ ? map_->load() : LandmarkMap{}, 0, start_);

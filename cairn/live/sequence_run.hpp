@@ -49,6 +49,9 @@ class SequenceRun {
   /// poses have none within 5 ms of its stamp.
   TrackedFrame next(const input::SequenceFrame& frame);
 
+  /// Like Follower::prefetch().
+  void prefetch(const input::SequenceFrame& frame);
+
   /// The landmarks of the last frame; empty without a rig.
   [[nodiscard]] const LandmarkUpdate& marked() const { return marked_; }
   [[nodiscard]] const FollowConfig& config() const { return follower_.config(); }

@@ -45,7 +45,11 @@ using ObjectChoice = std::function<ChosenObjects(RegionCandidates& candidates, c
 /// pipeline.method=region_tree, region_tree.cpp: superpixels are merged by all cues into a tree of regions, of
 /// which `choose` chooses the objects: by default, those most likely to be whole ones.
 Frame segment_by_region_tree(FrameInput in, const Run& run, const ObjectChoice& choose = {});
-/// Its first half …
+/// Its two parts: no earlier frame influences the first one.
+RegionCandidates grow_candidates(FrameInput& in, const Run& run);
+Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Run& run,
+                          const ObjectChoice& choose);
+/// The beginning of the first part …
 StereoMatch stereo_by_region_tree(FrameInput& in, const Run& run, StageClock& stage);
 /// … and the candidates up to the superpixels. Without a `network`, there are no hints: fitting adds its own.
 RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const HintNetwork* network,

@@ -54,19 +54,31 @@ RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const Hin
 }
 
 Frame segment_by_region_tree(FrameInput in, const Run& run, const ObjectChoice& choose) {
-  const auto& [rig, config, exec] = run;
+  RegionCandidates found = grow_candidates(in, run);
+  return frame_of_candidates(in, std::move(found), run, choose);
+}
+
+RegionCandidates grow_candidates(FrameInput& in, const Run& run) {
+  const Exec& exec = run.exec;
   StageClock stage(exec);
   RegionCandidates found = superpixel_candidates(in, run, &hint_network(), stage);
-  const auto& [match, surface_disparity_px, background, superpixels, hints, tree] = found;
 
   // The tree of merged regions, and concurrently the confidence of the disparities.
   Future<Image<float>> confidence(exec, [&](const Exec& concurrent) {
     return estimate_confidence(found.match.matches, found.match.stereo.disparity,
                                confidence_model(run.config.match.method), concurrent);
   });
-  found.tree =
-      stage("grow_merge_tree", grow_merge_tree(superpixels, found.cues(in.left), merge_classifier(), exec));
+  found.tree = stage("grow_merge_tree",
+                     grow_merge_tree(found.superpixels, found.cues(in.left), merge_classifier(), exec));
   found.match.stereo.confidence = stage("estimate_confidence", confidence.get());
+  return found;
+}
+
+Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Run& run,
+                          const ObjectChoice& choose) {
+  const auto& [rig, config, exec] = run;
+  const auto& [match, surface_disparity_px, background, superpixels, hints, tree] = found;
+  StageClock stage(exec);
 
   // The chosen regions as objects, with positions.
   const ChoiceLimits limits = limits_of(config.objects, in.left.gray.size());

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -222,29 +223,30 @@ enum class MatchAtPlace : std::uint8_t { same, farther, none };
 class MatchIndex {
  public:
   MatchIndex(const Points& points, Size image, int grid_step)
-      : points_(points),
-        cell_(std::max(kCell, 2 * grid_step)),
+      : cell_(std::max(kCell, 2 * grid_step)),
         columns_(image.width / cell_ + 1),
         rows_(image.height / cell_ + 1) {
     first_.resize(static_cast<std::size_t>(columns_ * rows_) + 1);
-    for (std::size_t i = 0; i < points.size(); ++i) ++first_[cell_of(i) + 1];
+    for (std::size_t i = 0; i < points.size(); ++i) ++first_[cell_of(points, i) + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    members_.resize(points.size());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t i = 0; i < points.size(); ++i) members_[next[cell_of(i)]++] = i;
+    disparities_.resize(points.size());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < points.size(); ++i) disparities_[next[cell_of(points, i)]++] = points.d[i];
   }
 
   /// Whether there is a match of this disparity about (x, y).
   [[nodiscard]] MatchAtPlace look(float x, float y, float d) const {
     if (!(x >= 0 && y >= 0)) return MatchAtPlace::none;
-    const float column = x / static_cast<float>(cell_);
-    const float row = y / static_cast<float>(cell_);
+    const float column = x * by_cell_;
+    const float row = y * by_cell_;
     if (!(column < static_cast<float>(columns_) && row < static_cast<float>(rows_)))
       return MatchAtPlace::none;
     const auto cell = static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column));
-    MatchAtPlace detect = first_[cell] == first_[cell + 1] ? MatchAtPlace::none : MatchAtPlace::farther;
-    for (std::size_t k = first_[cell]; k < first_[cell + 1]; ++k) {
-      const float above = points_.d[members_[k]] - d;
+    const float* const begin = disparities_.data() + first_[cell];
+    const float* const end = disparities_.data() + first_[cell + 1];
+    MatchAtPlace detect = begin == end ? MatchAtPlace::none : MatchAtPlace::farther;
+    for (const float* at = begin; at != end; ++at) {
+      const float above = *at - d;
       if (std::abs(above) <= kTolerance) return MatchAtPlace::same;
       if (above > 0) detect = MatchAtPlace::none;  // it may be hidden
     }
@@ -255,17 +257,17 @@ class MatchIndex {
   // In a coarse grid a cell is two steps wide, so that every cell has a node.
   static constexpr int kCell = 8;  // px
 
-  [[nodiscard]] std::size_t cell_of(std::size_t i) const {
-    return static_cast<std::size_t>(static_cast<int>(points_.y[i]) / cell_ * columns_ +
-                                    static_cast<int>(points_.x[i]) / cell_);
+  [[nodiscard]] std::size_t cell_of(const Points& points, std::size_t i) const {
+    return static_cast<std::size_t>(static_cast<int>(points.y[i]) / cell_ * columns_ +
+                                    static_cast<int>(points.x[i]) / cell_);
   }
 
-  const Points& points_;
   int cell_;
+  float by_cell_ = 1 / static_cast<float>(cell_);
   int columns_;
   int rows_;
-  std::vector<std::size_t> first_;
-  std::vector<std::size_t> members_;
+  std::vector<std::uint32_t> first_;
+  std::vector<float> disparities_;  // by cell
 };
 
 /// The matches of a map that the search uses.
@@ -297,18 +299,20 @@ template <class Visit>
 void for_each_original(const GroundPlane& plane, const Points& points, const Camera& camera,
                        const Kernels& run, Visit visit) {
   const Vec3 normal = camera.normal(plane);
-  const float square = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
+  const float twice_by_square = 2 / (normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+  const float by_focal = 1 / camera.focal_px;
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const float below_it = std::nextafter(-kTolerance, -kInfinity);
   for (const std::uint32_t i : between(points, plane, -kInfinity, below_it, run)) {
     const float below = -points.above(plane, i);
     if (plane.disparity_px(points.x[i], points.y[i]) + camera.infinity <= 0) continue;
-    const float twice = 2 * below / square;
+    const float twice = twice_by_square * below;
     const float z = 1 - twice * normal.z;
     if (!(z > 0)) continue;
-    const float x = ((points.x[i] - camera.cx_px) / camera.focal_px - twice * normal.x) / z;
-    const float y = ((points.y[i] - camera.cy_px) / camera.focal_px - twice * normal.y) / z;
-    const float d = (points.d[i] + camera.infinity) / z - camera.infinity;
+    const float by_z = 1 / z;
+    const float x = ((points.x[i] - camera.cx_px) * by_focal - twice * normal.x) * by_z;
+    const float y = ((points.y[i] - camera.cy_px) * by_focal - twice * normal.y) * by_z;
+    const float d = (points.d[i] + camera.infinity) * by_z - camera.infinity;
     visit(i, camera.cx_px + camera.focal_px * x, camera.cy_px + camera.focal_px * y, d);
   }
 }
@@ -334,15 +338,24 @@ Reflections reflections(const GroundPlane& plane, const Points& points, const Ma
 /// The similarity of mirror images to their originals: their correlation, in standard deviations above chance. A
 /// wall that a plane intersects has its lower part where the mirror image of the upper part would be; only the
 /// image can distinguish the two.
-double likeness(const GroundPlane& plane, const Points& points, const MatchIndex& places,
-                const Camera& camera, View<const float> contrast, const Kernels& run) {
+struct MirrorImages {
+  Reflections found;
+  double likeness = 0;
+};
+
+MirrorImages mirror_images(const GroundPlane& plane, const Points& points, const MatchIndex& places,
+                           const Camera& camera, View<const float> contrast, const Kernels& run) {
+  Reflections found;
   double pp = 0;
   double pq = 0;
   double qq = 0;
   int count = 0;
   for_each_original(plane, points, camera, run, [&](std::uint32_t i, float x, float y, float d) {
-    const bool apart = std::abs(points.y[i] - y) > kApart;  // else both windows contain the same pixels
-    if (!apart || places.look(x, y, d) != MatchAtPlace::same) return;
+    const MatchAtPlace detect = places.look(x, y, d);
+    found.missing += detect == MatchAtPlace::farther ? 1 : 0;
+    if (detect != MatchAtPlace::same) return;
+    ++found.seen;
+    if (std::abs(points.y[i] - y) <= kApart) return;  // both windows contain the same pixels
     const auto u = static_cast<int>(x + 0.5F);
     const auto v = static_cast<int>(y + 0.5F);
     if (!contrast.contains(u, v)) return;
@@ -353,7 +366,12 @@ double likeness(const GroundPlane& plane, const Points& points, const MatchIndex
     qq += q * q;
     ++count;
   });
-  return pq > 0 ? pq * std::sqrt(count / (pp * qq)) : 0;
+  return {found, pq > 0 ? pq * std::sqrt(count / (pp * qq)) : 0};
+}
+
+double likeness(const GroundPlane& plane, const Points& points, const MatchIndex& places,
+                const Camera& camera, View<const float> contrast, const Kernels& run) {
+  return mirror_images(plane, points, places, camera, contrast, run).likeness;
 }
 
 /// splitmix64 (Steele, Lea, Flood 2014): a well-mixed number for each n, without a state.
@@ -646,9 +664,8 @@ class MirrorJudge {
   [[nodiscard]] double operator()(const GroundPlane& plane, const Points& points) const {
     if (!camera_.may_stand_on(plane) || !is_within_reach(plane, seen_.nearest, contrast_.size(), camera_))
       return 0;
-    const Reflections found = reflections(plane, points, seen_.places, camera_, run_);
-    if (found.seen == 0 || kMinSeen * found.missing > found.seen) return 0;
-    return likeness(plane, points, seen_.places, camera_, contrast_, run_);
+    const auto [found, alike] = mirror_images(plane, points, seen_.places, camera_, contrast_, run_);
+    return found.seen == 0 || kMinSeen * found.missing > found.seen ? 0 : alike;
   }
   [[nodiscard]] double operator()(const GroundPlane& plane) const { return (*this)(plane, seen_.points); }
 
@@ -663,11 +680,18 @@ class MirrorJudge {
 
   /// Moves the plane in small steps while it becomes a better mirror. Returns its likeness.
   double climb(GroundPlane& plane) const {
+    climb(plane, some_, {4.0F, 2.0F, 1.0F, 0.5F});
+    return (*this)(plane);
+  }
+
+ private:
+  /// `steps`: px, at the middle row, the last row, the sides.
+  double climb(GroundPlane& plane, const Points& points, std::initializer_list<float> steps) const {
     const float middle = 0.5F * static_cast<float>(contrast_.height());
     const auto last = static_cast<float>(contrast_.height() - 1);
     const float half_width = 0.5F * static_cast<float>(contrast_.width());
-    double most = (*this)(plane);
-    for (const float step : {4.0F, 2.0F, 1.0F, 0.5F}) {  // px, at the middle row, the last row, the sides
+    double most = (*this)(plane, points);
+    for (const float step : steps) {
       bool moved = true;
       for (int round = 0; moved && round < kClimbs; ++round) {
         moved = false;
@@ -678,7 +702,7 @@ class MirrorJudge {
           next.a = plane.a + at_side * step / half_width;
           next.b = (down - up) / (last - middle);
           next.c = up - next.b * middle - next.a * camera_.cx_px;
-          const double alike = (*this)(next);
+          const double alike = (*this)(next, points);
           if (!(alike > most)) continue;
           most = alike;
           plane = next;
@@ -689,12 +713,12 @@ class MirrorJudge {
     return most;
   }
 
- private:
   static constexpr float kNear = 2;  // px
   static constexpr std::array<std::array<float, 3>, 6> kSteps{
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
   const SampledMap& seen_;
+  Points some_ = about(kRefining, seen_.points);
   View<const float> contrast_;
   const Camera& camera_;
   const Kernels& run_;

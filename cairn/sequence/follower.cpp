@@ -3,7 +3,7 @@
 #include <cairn/sequence/follower.hpp>
 
 #include <cairn/core/error.hpp>
-#include <cairn/pipeline/methods.hpp>
+#include <cairn/pipeline/scenes_ahead.hpp>
 #include <utility>
 
 #include <cairn/sequence/controller.hpp>
@@ -60,6 +60,7 @@ Follower::Follower(FollowConfig config, std::optional<StereoRig> rig, Exec exec)
   validate(config_);
   if (rig_) rig_->validate();
   exec_.pool = Pool::make();
+  ahead_ = std::make_unique<ScenesAhead>(config_.segmentation, rig_, exec_);
   begin_control();
 }
 
@@ -80,7 +81,10 @@ void Follower::set_config(FollowConfig config) {
     return all;
   };
   const bool is_same = values(config) == values(config_);
-  config_ = std::move(config);  // also what is no option: a known floor
+  const bool is_same_floor =
+      config.segmentation.ground.known == config_.segmentation.ground.known;  // no option
+  config_ = std::move(config);
+  if (!is_same || !is_same_floor) ahead_->set_config(config_.segmentation);
   if (!is_same) begin_control();
 }
 
@@ -115,10 +119,16 @@ TrackedFrame Follower::next(const StereoPair& pair, Stamp stamp, const std::opti
     step.control = controller_->next(step, *this, [&](Follower& candidate) {
       return candidate.follow(pair, stamp, prior, map_from_camera, scan);
     });
-    if (step.control && step.control->is_set)
+    if (step.control && step.control->is_set) {
       set(config_.segmentation, step.control->candidate.option, step.control->candidate.value);
+      ahead_->set_config(config_.segmentation);
+    }
   }
   return step;
+}
+
+void Follower::prefetch(const StereoPair& pair) {
+  ahead_->begin(pair);
 }
 
 void Follower::check(const StereoPair& pair, Stamp stamp) const {
@@ -223,13 +233,8 @@ TrackedFrame Follower::follow(const StereoPair& pair, Stamp stamp, const std::op
     }
     return choose_candidates(found.tree, scores, limits, config_.tracking.low_confidence);
   };
-  const Run run{rig_, config, exec_};
-  if (config.pipeline.method == Method::region_tree) {
-    step.frame = segment_by_region_tree(FrameInput::from(pair), run, choose);
-  } else {
-    step.frame = segment_by_paper(FrameInput::from(pair), run);
-    predict(step.frame);
-  }
+  step.frame = ahead_->segment(pair, choose);
+  if (config.pipeline.method == Method::paper) predict(step.frame);
   state_.size = pair.size();
   state_.before = stamp;
   ++state_.frames;

@@ -52,6 +52,11 @@ class Follower {
                     const std::optional<Pose>& map_from_camera = std::nullopt,
                     const LaserScan* scan = nullptr);
 
+  /// Begins the segmentation of the pair after the next one, see Segmenter::prefetch(): call it before next(), or from
+  /// another thread at any time. It is dropped when options of the segmentation change. Throws Error if the
+  /// configuration does not suit the size.
+  void prefetch(const StereoPair& pair);
+
   /// Announces a gap before the next frame (see source.max_gap), during which the motion of camera and
   /// objects is unknown. All tracks are lost until seen again, tentative ones end, and unless the camera
   /// finds its keyframe again, its position has a standard deviation of 1 m and 30°.
@@ -98,6 +103,7 @@ class Follower {
   std::optional<StereoRig> rig_;
   Exec exec_;
   State state_;
+  std::unique_ptr<ScenesAhead> ahead_;
   std::unique_ptr<Controller> controller_;  // null if off
 };
 

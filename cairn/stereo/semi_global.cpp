@@ -56,45 +56,84 @@ int rows_at_a_time(const SearchLayout& layout, const Exec& exec) {
   return kernels::round_up(rows, kernels::kRowsAbreast);
 }
 
+/// Rows of which costs and steps are kept: all of a small image. In a large one, computing them again costs less time
+/// than writing them to memory and reading them back. At least √height, for which bands and their starts together are
+/// smallest.
+int rows_of_band(const SearchLayout& layout) {
+  constexpr int kCandidates = 5 << 20;  // two bytes each
+  const int rows = std::max(kCandidates / (layout.width * layout.lanes),
+                            static_cast<int>(std::ceil(std::sqrt(static_cast<double>(layout.height)))));
+  return std::min(layout.height, kernels::round_up(rows, kernels::kRowsAbreast));
+}
+
 void follow_paths(const SemiGlobalTask& task, const SemiGlobalKernels& run, const Exec& exec) {
-  const auto [width, height] = task.left.size();
+  const int width = task.layout.width;
+  const int height = task.layout.height;
+  const auto columns = [&](const auto& work) { parallel_for(exec, width, kMinColumns, work); };
   parallel_for(exec, height, 16, [&](int first, int last) { run.describe_rows(task, first, last); });
-  parallel_for(exec, width, kMinColumns, [&](int first, int last) { run.match_down(task, first, last); });
+  columns([&](int first, int last) { run.match_down(task, first, last); });
   const int rows = rows_at_a_time(task.layout, exec);
-  for (int bottom = height; bottom > 0; bottom -= rows) {
-    const int top = std::max(0, bottom - rows);
-    parallel_for(exec, width, kMinColumns,
-                 [&](int first, int last) { run.match_up(task, first, last, top, bottom); });
-    parallel_for(exec, bottom - top, 1,
-                 [&](int first, int last) { run.match_across(task, top + first, top + last); });
+  for (int band = task.bands() - 1; band >= 0; --band) {
+    if (band + 1 < task.bands())
+      columns([&](int first, int last) { run.match_band(task, first, last, band); });
+    const int band_top = band * task.band_rows;
+    for (int bottom = std::min(height, band_top + task.band_rows); bottom > band_top; bottom -= rows) {
+      const int top = std::max(band_top, bottom - rows);
+      columns([&](int first, int last) { run.match_up(task, first, last, top, bottom); });
+      parallel_for(exec, bottom - top, 1,
+                   [&](int first, int last) { run.match_across(task, top + first, top + last); });
+    }
   }
+}
+
+SearchLayout layout_of(Size size, const MatchConfig& config, const SemiGlobalKernels& run) {
+  return {size.width, size.height, config.min_disparity, config.num_disparities,
+          run.lanes(config.num_disparities)};
 }
 
 }  // namespace
 
 Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
                           const SemiGlobalConfig& penalties, const Exec& exec) {
-  const SemiGlobalKernels& run = kernels::semi_global_kernels(exec);
+  const SearchLayout layout = layout_of(pair.size(), config, kernels::semi_global_kernels(exec));
+  return kernels::match_in_bands(pair, config, penalties, rows_of_band(layout), exec);
+}
+
+Matches kernels::match_in_bands(const StereoPair& pair, const MatchConfig& config,
+                                const SemiGlobalConfig& penalties, int band_rows, const Exec& exec) {
+  const SemiGlobalKernels& run = semi_global_kernels(exec);
   const Size size = pair.size();
-  const SearchLayout layout{size.width, size.height, config.min_disparity, config.num_disparities,
-                            run.lanes(config.num_disparities)};
+  const SearchLayout layout = layout_of(size, config, run);
   Matches matches = make_matches(size, config.maps, exec.pool);
-  const Size volume{size.width * layout.lanes, size.height};
+  const Size volume{size.width * layout.lanes, band_rows};
+  const int bands = (size.height + band_rows - 1) / band_rows;
   Image<Gray> smooth(size, exec.pool);
   Image<std::uint8_t> left_bits({3 * kernels::round_up(size.width, 64), size.height}, exec.pool);
   Image<std::uint8_t> right_bits({3 * layout.length(), size.height}, exec.pool);
   const Image<std::uint8_t> inside = inside_row(layout, exec.pool);
+  Image<std::uint8_t> band_along({volume.width, bands}, exec.pool);
+  Image<std::uint8_t> band_least({size.width, bands}, exec.pool);
   Image<std::uint8_t> costs(volume, exec.pool);
   Image<std::uint8_t> steps(volume, exec.pool);
   Image<std::uint8_t> along({volume.width, 1}, 0, exec.pool);
   Image<std::uint8_t> least({size.width, 1}, 0, exec.pool);
-  const SemiGlobalTask task{layout,       table_of(penalties),
-                            config.maps,  pair.left(),
-                            pair.right(), smooth,
-                            left_bits,    right_bits,
-                            inside,       costs,
-                            steps,        along,
-                            least,        matches};
+  const SemiGlobalTask task{.layout = layout,
+                            .penalties = table_of(penalties),
+                            .maps = config.maps,
+                            .left = pair.left(),
+                            .right = pair.right(),
+                            .smooth = smooth,
+                            .left_bits = left_bits,
+                            .right_bits = right_bits,
+                            .inside = inside,
+                            .band_rows = band_rows,
+                            .band_along = band_along,
+                            .band_least = band_least,
+                            .costs = costs,
+                            .steps = steps,
+                            .along = along,
+                            .least = least,
+                            .out = matches};
   follow_paths(task, run, exec);
   return matches;
 }

@@ -45,8 +45,8 @@ void fields(SemiGlobalConfig& c, V&& v) {
 ///    image have no cost and never win. Ties and best_right as in match_windows().
 ///
 /// All steps are integer, so every instruction set gets the same bits. Only min_disparity, num_disparities
-/// and maps of `config` are read; row_offset stays empty. Unlike window matching, this holds the costs of all
-/// candidates of all pixels in memory, 2 bytes each.
+/// and maps of `config` are read; row_offset stays empty. Needs 2 bytes for each candidate of the pixels of a band of
+/// rows: of about 10 MB together, or √height rows if that is more.
 Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
                           const SemiGlobalConfig& penalties, const Exec& exec);
 

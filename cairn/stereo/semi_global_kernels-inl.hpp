@@ -170,7 +170,11 @@ CAIRN_LANES_INLINE bytes::Vec<D> go_on(D d, const std::uint8_t* costs, const Alo
   return bytes::MinOfAll(d, least_now);
 }
 
-/// The use of L − C: stored, added to the stored value, or added to the total.
+/// The use of L − C: none, stored, added to the stored value, or added to the total.
+struct Forget {
+  template <class V>
+  CAIRN_LANES_INLINE void operator()(int, V, V) const {}
+};
 template <class D>
 struct Keep {
   D d;
@@ -206,7 +210,7 @@ struct SumUp {
 // ---------------------------------------------------------------------------------------------------------------
 // Costs, and the path down
 
-/// Columns first … last − 1 of all rows.
+/// Columns first … last − 1.
 template <class D>
 class Descent {
  public:
@@ -218,19 +222,44 @@ class Descent {
         sums_(3 * (last - first) * g_.lanes),
         along_((last - first) * g_.lanes),
         least_(last - first),
+        cost_(g_.lanes),
         beyond_(g_.lanes) {
     std::fill(beyond_.data() + g_.count, beyond_.data() + g_.lanes, kNoLane);
   }
 
+  /// All rows; keeps the last band.
   void run() {
     sum_rows(0);
     for (int y = 0; y < g_.height; ++y) {
+      const int band = y / task_.band_rows;
+      if (y == band * task_.band_rows) {
+        std::copy_n(along_.data(), along_.size(), band_along(band));
+        std::copy_n(least_.data(), least_.size(), band_least(band));
+      }
       if (y + 1 < g_.height) sum_rows(y + 1);
-      go_down(y);
+      band + 1 == task_.bands() ? go_down<true>(y) : go_down<false>(y);
+    }
+  }
+  /// The rows of a band.
+  void run(int band) {
+    std::copy_n(band_along(band), along_.size(), along_.data());
+    std::copy_n(band_least(band), least_.size(), least_.data());
+    const int top = band * task_.band_rows;
+    const int bottom = std::min(g_.height, top + task_.band_rows);
+    if (top > 0) sum_rows(top - 1);
+    sum_rows(top);
+    for (int y = top; y < bottom; ++y) {
+      if (y + 1 < g_.height) sum_rows(y + 1);
+      go_down<true>(y);
     }
   }
 
  private:
+  [[nodiscard]] std::uint8_t* band_along(int band) const {
+    return task_.band_along.row(band) + first_ * g_.lanes;
+  }
+  [[nodiscard]] std::uint8_t* band_least(int band) const { return task_.band_least.row(band) + first_; }
+
   /// Σh over three neighbours in row y.
   [[nodiscard]] std::uint8_t* sums(int y) const {
     return sums_.data() + std::clamp(y, 0, g_.height - 1) % 3 * (last_ - first_) * g_.lanes;
@@ -274,6 +303,7 @@ class Descent {
     }
   }
 
+  template <bool kKeeps>
   void go_down(int y) {
     const D d;
     const auto small = bytes::Set(d, task_.penalties.small);
@@ -286,22 +316,22 @@ class Descent {
     const std::uint8_t* const here = sums(y);
     const std::uint8_t* const below = sums(y + 1);
     const std::uint8_t* const beyond = beyond_.data();
-    std::uint8_t* const costs = task_.costs.row(y) + first_ * lanes;
-    std::uint8_t* const steps = task_.steps.row(y) + first_ * lanes;
-    const int next_y = std::min(y + 1, g_.height - 1);
-    const std::uint8_t* const next_costs = task_.costs.row(next_y) + first_ * lanes;
-    const std::uint8_t* const next_steps = task_.steps.row(next_y) + first_ * lanes;
+    std::uint8_t* const costs = kKeeps ? task_.costs_of(y) + first_ * lanes : cost_.data();
+    std::uint8_t* const steps = kKeeps ? task_.steps_of(y) + first_ * lanes : nullptr;
     std::uint8_t* const along = along_.data();
     std::uint8_t* const least = least_.data();
     for (int x = 0; x < count; ++x) {
       const int at = x * lanes;
-      expect_writes(next_costs + at, lanes);
-      expect_writes(next_steps + at, lanes);
-      average(above + at, here + at, below + at, beyond, lanes, costs + at);
+      std::uint8_t* const cost = costs + (kKeeps ? at : 0);
+      average(above + at, here + at, below + at, beyond, lanes, cost);
       const auto penalty = bytes::Set(d, large_penalty(large, smooth[x], smooth_above[x]));
-      const auto now = go_on(d, costs + at, MemoryPath<D>{d, along + at},
-                             {bytes::Set(d, least[x]), small, penalty}, lanes, Keep<D>{d, steps + at});
-      least[x] = bytes::GetLane(now);
+      const Transition<D> by{bytes::Set(d, least[x]), small, penalty};
+      const MemoryPath<D> path{d, along + at};
+      if constexpr (kKeeps) {
+        least[x] = bytes::GetLane(go_on(d, cost, path, by, lanes, Keep<D>{d, steps + at}));
+      } else {
+        least[x] = bytes::GetLane(go_on(d, cost, path, by, lanes, Forget()));
+      }
     }
   }
 
@@ -323,6 +353,7 @@ class Descent {
   Scratch<std::uint8_t> sums_;  // of three rows
   Scratch<std::uint8_t> along_;
   Scratch<std::uint8_t> least_;
+  Scratch<std::uint8_t> cost_;    // of one pixel
   Scratch<std::uint8_t> beyond_;  // 255 in lanes without candidate
 };
 
@@ -340,10 +371,11 @@ void go_up(const SemiGlobalTask& task, int first, int last, int top, int bottom)
   for (int y = bottom - 1; y >= top; --y) {
     const Gray* const smooth = task.smooth.row(y);
     const Gray* const smooth_below = task.smooth.row(std::min(y + 1, task.layout.height - 1));
-    const std::uint8_t* const costs = task.costs.row(y);
-    std::uint8_t* const steps = task.steps.row(y);
-    const std::uint8_t* const next_costs = task.costs.row(std::max(y - 1, 0));
-    const std::uint8_t* const next_steps = task.steps.row(std::max(y - 1, 0));
+    const std::uint8_t* const costs = task.costs_of(y);
+    std::uint8_t* const steps = task.steps_of(y);
+    const int next_y = std::max(y - 1, top);
+    const std::uint8_t* const next_costs = task.costs_of(next_y);
+    const std::uint8_t* const next_steps = task.steps_of(next_y);
     for (int x = first; x < last; ++x) {
       const int at = x * lanes;
       expect_reads(next_costs + at, lanes);
@@ -435,7 +467,7 @@ class Crossing {
     Paths<kRows> paths;
     std::fill_n(along_.data(), along_.size(), std::uint8_t{0});
     for (int row = 0; row < kRows; ++row) {
-      paths.costs[row] = task_.costs.row(y + row);
+      paths.costs[row] = task_.costs_of(y + row);
       paths.smooth[row] = task_.smooth.row(y + row);
       paths.held[row] = bytes::Zero(d);
       paths.least[row] = bytes::Zero(d);
@@ -483,7 +515,7 @@ class Crossing {
     const std::uint8_t* back[kRows];
     std::int16_t* sums[kRows];
     for (int row = 0; row < kRows; ++row) {
-      vertical[row] = task_.steps.row(y + row);
+      vertical[row] = task_.steps_of(y + row);
       back[row] = back_of(row);
       sums[row] = sums_of(row, 0);
     }
@@ -709,6 +741,9 @@ bool narrow(const SemiGlobalTask& task) {
 void match_down(const SemiGlobalTask& task, int first, int last) {
   narrow(task) ? Descent<Narrow>(task, first, last).run() : Descent<Full>(task, first, last).run();
 }
+void match_band(const SemiGlobalTask& task, int first, int last, int band) {
+  narrow(task) ? Descent<Narrow>(task, first, last).run(band) : Descent<Full>(task, first, last).run(band);
+}
 void match_up(const SemiGlobalTask& task, int first, int last, int top, int bottom) {
   narrow(task) ? go_up<Narrow>(task, first, last, top, bottom) : go_up<Full>(task, first, last, top, bottom);
 }
@@ -727,6 +762,7 @@ void match_across(const SemiGlobalTask& task, int first, int last) {
 }  // namespace
 
 extern const SemiGlobalKernels kSemiGlobalKernels;
-const SemiGlobalKernels kSemiGlobalKernels{lanes_of, describe_rows, match_down, match_up, match_across};
+const SemiGlobalKernels kSemiGlobalKernels{lanes_of,   describe_rows, match_down,
+                                           match_band, match_up,      match_across};
 
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

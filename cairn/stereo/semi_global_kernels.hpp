@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/exec.hpp>
-#include <cairn/stereo/match.hpp>
 #include <cairn/stereo/memory.hpp>
+#include <cairn/stereo/semi_global.hpp>
 #include <cstdint>
 
 /// The kernels of match_semi_global(): everything that runs per pixel; one set per instruction set. Private
@@ -58,11 +58,18 @@ struct SemiGlobalTask {
   View<std::uint8_t> left_bits;     // census: three rows of bytes side by side, round_up(width, 64) each
   View<std::uint8_t> right_bits;    // the same reversed, layout.length() each
   View<const std::uint8_t> inside;  // one reversed row: 255 for existing pixels
-  View<std::uint8_t> costs;         // C: width·lanes in a row; 255 in lanes ≥ count
-  View<std::uint8_t> steps;         // L − C of the downward path, later plus that of the upward path
-  View<std::uint8_t> along;         // L of the upward path, one row
-  View<std::uint8_t> least;         // minimum of these for each pixel
+  int band_rows;                    // the last band may have fewer
+  View<std::uint8_t> band_along;    // [band]: L of the downward path in the row above it, width·lanes
+  View<std::uint8_t> band_least;    // [band]: minimum of these for each pixel
+  View<std::uint8_t> costs;         // of one band, C: width·lanes in a row; 255 in lanes ≥ count
+  View<std::uint8_t> steps;  // of one band, L − C of the downward path, later plus that of the upward path
+  View<std::uint8_t> along;  // L of the upward path, one row
+  View<std::uint8_t> least;  // minimum of these for each pixel
   Matches& out;
+
+  [[nodiscard]] int bands() const { return (layout.height + band_rows - 1) / band_rows; }
+  [[nodiscard]] std::uint8_t* costs_of(int y) const { return costs.row(y % band_rows); }
+  [[nodiscard]] std::uint8_t* steps_of(int y) const { return steps.row(y % band_rows); }
 };
 
 struct SemiGlobalKernels {
@@ -70,14 +77,21 @@ struct SemiGlobalKernels {
   int (*lanes)(int count);
   /// Census of both images and the smoothed left one, for the rows first … last − 1.
   void (*describe_rows)(const SemiGlobalTask& task, int first, int last);
-  /// Costs and the downward path, for the columns first … last − 1 of all rows.
+  /// The downward path, for the columns first … last − 1 of all rows: band_along and band_least, and costs and steps of
+  /// the last band.
   void (*match_down)(const SemiGlobalTask& task, int first, int last);
+  /// Costs and steps of a band once more, for the columns first … last − 1.
+  void (*match_band)(const SemiGlobalTask& task, int first, int last, int band);
   /// The upward path, for the columns first … last − 1 of the rows bottom − 1 … top. To be called from the
   /// lowest rows to the highest.
   void (*match_up)(const SemiGlobalTask& task, int first, int last, int top, int bottom);
   /// The horizontal paths and the winners, for the rows first … last − 1.
   void (*match_across)(const SemiGlobalTask& task, int first, int last);
 };
+
+/// match_semi_global(), with bands of so many rows: any number ≥ 1 gives the same.
+Matches match_in_bands(const StereoPair& pair, const MatchConfig& config, const SemiGlobalConfig& penalties,
+                       int band_rows, const Exec& exec);
 
 /// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const SemiGlobalKernels* semi_global_kernels(Target target);

@@ -122,6 +122,20 @@ void add_frame(FrameTimes& all, const FrameClock& clock, const TimedStage& frame
   disparity.add_to(all.disparity);
 }
 
+void add_overlapping(FrameTimes& all, const StereoPair& pair, const Segmenter& segmenter) {
+  const int frames = all.frames();
+  if (segmenter.exec().threads() == 1 || frames < 2) return;
+  const TimedStage whole = timed([&] {
+    segmenter.prefetch(pair);  // the first frame; the pair is always the same
+    for (int k = 0; k < frames; ++k) {
+      if (k + 1 < frames) segmenter.prefetch(pair);
+      static_cast<void>(segmenter.segment(pair));
+    }
+  });
+  all.overlapping_ms = whole.wall_ms / frames;
+  all.overlapping_pool_bytes = segmenter.exec().pool.bytes();
+}
+
 }  // namespace
 
 FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
@@ -166,6 +180,7 @@ FrameTimes time_frames(const StereoPair& pair, const std::optional<StereoRig>& r
   all.later_allocations = pool.heap_allocations() - all.first_allocations;
   const Frame frame = segmenter.segment(pair);
   all.objects = static_cast<int>(frame.objects.list.size());
+  add_overlapping(all, pair, segmenter);
   all.disparity_px = frame.disparity.disparity_px.clone();
   for (Peer& peer : peers) {
     if (peer.times.refusal.empty()) peer.times.disparity_px = peer.matcher.disparity_px();

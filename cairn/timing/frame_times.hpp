@@ -42,6 +42,10 @@ struct FrameTimes {
   std::int64_t resident_bytes = 0;     // peak resident size after the first frame
   std::int64_t first_allocations = 0;  // image buffers from the heap, in the first frame …
   std::int64_t later_allocations = 0;  // … and in all later ones
+  // With Segmenter::prefetch(): wall time of a frame in the mean of as many frames, and peak size of the pool; 0 with
+  // one thread, or for a single frame.
+  double overlapping_ms = 0;
+  std::int64_t overlapping_pool_bytes = 0;
   int objects = 0;
   Image<float> disparity_px;  // NaN = hole
   std::vector<PeerTimes> peers;

@@ -8,13 +8,16 @@
 /// Machine and build of a measurement, part of every report.
 namespace cairn::timing {
 
+/// The name in /proc/cpuinfo; on ARM, which has none there, that of the board.
 inline std::string processor() {
   std::ifstream in("/proc/cpuinfo");
   for (std::string line; std::getline(in, line);) {
     const std::size_t colon = line.find(": ");
     if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
   }
-  return "unknown processor";
+  std::string board;
+  std::getline(std::ifstream("/proc/device-tree/model"), board, '\0');
+  return board.empty() ? "unknown processor" : board;
 }
 
 /// The compiler of the calling program; the library is from the same build.

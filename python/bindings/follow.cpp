@@ -163,6 +163,11 @@ class PyFollower {
     TrackedFrame step = follower_.next(pair, Stamp{ns}, prior, pose);
     return {std::move(step), provenance(settings_, used, calibration_.rig(), Stamp{ns})};
   }
+  void prefetch(const LoadedImage& left, const LoadedImage& right) {
+    const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
+    calibration_.check(pair.size());
+    follower_.prefetch(pair);
+  }
   std::vector<OptionInfo> options() {
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
     return cairn::options(follower_.config());
@@ -344,6 +349,7 @@ void bind_follow(py::module_& m) {
   py::class_<FollowSettings>(m, "FollowSettings").def(py::init(&settings));
   py::class_<PyFollower>(m, "Pairs")
       .def(py::init<FollowSettings, PyCalibration, const Exec&>())
+      .def("prefetch", &PyFollower::prefetch, Released())
       .def("next", &PyFollower::next, Released())
       .def("options", &PyFollower::options, Released());
   m.def("follow", &follow, Released());

@@ -55,6 +55,50 @@ StereoResult disparity_of_pair(const LoadedImage& left, const LoadedImage& right
   return estimate_disparity(pair, calibration.rig(), config.suited(calibration.calibration).config, exec);
 }
 
+/// cairn::Segmenter; each frame with its provenance.
+class PySegmenter {
+ public:
+  PySegmenter(const PyConfig& config, PyCalibration calibration, const Exec& exec)
+      : preset_(config.preset),
+        calibration_(std::move(calibration)),
+        segmenter_(config.suited(calibration_.calibration).config, calibration_.rig(), noting_times(exec)) {}
+
+  auto segment(const LoadedImage& left, const LoadedImage& right) const {
+    const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
+    calibration_.check(pair.size());
+    output::Provenance how{preset_, segmenter_.config(), calibration_.rig(), {}, false};
+    times_ = &how.timings;
+    Frame frame = segmenter_.segment(pair);
+    return std::pair{std::move(frame), std::move(how)};
+  }
+  void prefetch(const LoadedImage& left, const LoadedImage& right) const {
+    const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
+    calibration_.check(pair.size());
+    segmenter_.prefetch(pair);
+  }
+  [[nodiscard]] Exec exec() const {
+    Exec own = segmenter_.exec();
+    own.observe = nullptr;
+    return own;
+  }
+
+ private:
+  static Exec noting_times(Exec exec) {
+    exec.observe = [](std::string_view stage, const StageResult&, double ms) {
+      times_->push_back({std::string(stage), ms});
+    };
+    return exec;
+  }
+
+  // Of the frame of this thread: the stages are reported to the thread that asked for it.
+  static thread_local std::vector<output::StageTime>* times_;
+
+  std::string preset_;
+  PyCalibration calibration_;
+  Segmenter segmenter_;
+};
+thread_local std::vector<output::StageTime>* PySegmenter::times_ = nullptr;
+
 // ---- metric results ----
 
 /// A scan or grid of what is seen from the floor.
@@ -113,9 +157,11 @@ void bind_method(py::module_& m) {
   m.def("segment_pair", &segment_pair, Released());
   m.def("segment_given", &segment_given, Released());
   m.def("estimate_disparity", &disparity_of_pair, Released());
-  m.def("own_exec", [](const Exec& exec, const PyConfig& config, const PyCalibration& calibration) {
-    return Segmenter(config.suited(calibration.calibration).config, calibration.rig(), exec).exec();
-  });
+  py::class_<PySegmenter>(m, "SegmenterData")
+      .def(py::init<const PyConfig&, const PyCalibration&, const Exec&>())
+      .def("segment", &PySegmenter::segment, Released())
+      .def("prefetch", &PySegmenter::prefetch, Released())
+      .def_property_readonly("exec", &PySegmenter::exec);
 
   m.def("floor_of", [](const Frame& f, const output::Provenance& p) { return floor_frame(f.ground, p.rig); });
   m.def("scan", &from_floor<&scan_obstacles>);

@@ -191,6 +191,11 @@ class Follower:
         data, how = self._pairs.next(left, right, stamp, prior, known)
         return Step._of(left, data, how, (str(data.index), "", []), {}, [])
 
+    def prefetch(self, left: ImageLike, right: ImageLike, *, bgr: bool = False) -> None:
+        """Begins the segmentation of the pair after the next one, in the background, like Segmenter.prefetch(): call it
+        before next() of the next pair. follow() does so."""
+        self._pairs.prefetch(left, right)
+
     def __getitem__(self, name: str) -> str:
         """The value of an option by its full name, as text."""
         found = {option.name: option._text for option in self._pairs.options()}

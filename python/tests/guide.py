@@ -47,6 +47,19 @@ def video(pairs, rig):
     return found
 
 
+def overlapping(pairs, rig):
+    found = []
+    # [prefetch]
+    segmenter = cairn.Segmenter(rig, exec=cairn.Exec(threads=2))
+    for k, (left, right) in enumerate(pairs):
+        if k + 1 < len(pairs):
+            segmenter.prefetch(*pairs[k + 1])
+        frame = segmenter.segment(left, right)
+        found.append(len(frame.objects))
+    # [/prefetch]
+    return found
+
+
 def followed(folder):
     found = []
     # [follow]

@@ -26,6 +26,7 @@ def test_the_guide_runs(sample, source, capsys):
     assert frame.config["match.window_size"] == 11 and coarse[0].default == 9
     found = guide.video([(sample.left, sample.right)] * 2, rig)
     assert found[0] == found[1] and found[0][0][0] == 1
+    assert guide.overlapping([(sample.left, sample.right)] * 4, rig) == [len(sample.frame.objects)] * 4
     if isinstance(cairn.Follower, type):
         found = guide.followed(source / "data" / "sequences" / "rolling_ball")
         assert any(is_moving for _, _, _, is_moving, _ in found) and len({track for _, track, *_ in found}) == 3

@@ -26,6 +26,24 @@ def test_a_segmenter_equals_segment(sample):
         cairn.Segmenter(match={"window_size": 8})
 
 
+def test_frames_begun_early_are_the_same(sample):
+    dark = (sample.left // 2, sample.right // 2)
+    pairs = [(sample.left, sample.right), dark] * 2
+    expected = [cairn.segment(*pair, sample.calibration) for pair in pairs[:2]] * 2
+    segmenter = cairn.Segmenter(sample.calibration, exec=cairn.Exec(2))
+    follower = cairn.Follower(sample.calibration, exec=cairn.Exec(2))
+    for k, pair in enumerate(pairs):
+        if k + 1 < len(pairs):
+            segmenter.prefetch(*pairs[k + 1])
+            follower.prefetch(*pairs[k + 1])
+        frame = segmenter.segment(*pair)
+        assert same_frame(frame, expected[k])
+        assert list(frame.timings) == list(expected[k].timings)
+        assert follower.next(*pair, seconds=k).frame.disparity.tobytes() == expected[k].disparity.tobytes()
+    with pytest.raises(cairn.Error, match="right"):
+        segmenter.prefetch(sample.left, sample.right[:-1])
+
+
 @pytest.mark.parametrize("preset", cairn.preset_names())
 def test_from_the_second_frame_on_no_image_is_allocated(sample, preset):
     segmenter = cairn.Segmenter(sample.calibration, preset=preset, exec=cairn.Exec(1))

@@ -98,6 +98,25 @@ TEST_F(Bench, JsonListsEveryStageInOrderWithItsTimes) {
   EXPECT_EQ(found.at("memory").at("later_allocations"), 0);
 }
 
+TEST_F(Bench, AReportHoldsBothPresetsAtThreeSizes) {
+  const Outcome outcome =
+      run({"bench", "--report", path("board.json"), "--frames", "1", "--no-opencv", "--threads", "1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json found = Json::parse(content(at("board.json")), nullptr, false);
+  ASSERT_EQ(found.at("runs").size(), 6U);
+  EXPECT_EQ(found.at("runs").at(5).at("preset"), "paper");
+  EXPECT_EQ(found.at("runs").at(5).at("pair").at("width"), 1280);
+  EXPECT_GT(found.at("runs").at(0).at("frame").at("wall_ms").at("median"), 0);
+}
+
+TEST_F(Bench, FramesOverlapWithSeveralThreads) {
+  const Json found = measured({"--size", "160x120", "--frames", "3", "--no-opencv", "--threads", "2"});
+  EXPECT_GT(found.at("overlapping").at("frames_per_second"), 0);
+  EXPECT_GT(found.at("overlapping").at("pool_bytes"), found.at("memory").at("pool_bytes"));
+  EXPECT_FALSE(measured({"--size", "160x120", "--frames", "2", "--no-opencv", "--threads", "1"})
+                   .contains("overlapping"));
+}
+
 TEST_F(Bench, StagesNeededOnlyForObjectsAreNotCountedAsDisparity) {
   const Json found = measured({"--size", "160x120", "--frames", "1", "--no-opencv", "--preset", "paper"});
   int seen = 0;
@@ -182,6 +201,9 @@ TEST_F(Bench, RefusesContradictoryArguments) {
   refuses({"bench", ""}, {"LEFT", "empty"});
   refuses(with("bench", pair, {"--budget", "10"}), {"--budget", "LEFT"});
   refuses({"bench", "--budget", "0"}, {"--budget"});
+  refuses(with("bench", pair, {"--report", path("a.json")}), {"--report", "LEFT"});
+  refuses({"bench", "--report", path("a.json"), "--preset", "paper"}, {"--report", "--preset"});
+  refuses({"bench", "--report", path("a.json"), "--size", "64x48"}, {"--report", "--size"});
   refuses({"bench", "--frames", "0"}, {"--frames"});
   refuses({"bench", "--seconds", "-1"}, {"--seconds"});
   refuses({"bench", "--set", "match.no_such=1"}, {"match.no_such"});

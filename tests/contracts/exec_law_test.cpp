@@ -12,6 +12,7 @@
 #include <string>
 #include <support/samples.hpp>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace cairn {
@@ -192,6 +193,80 @@ TEST(ExecLaw, OneSegmenterGivesTheSameToSeveralThreads) {
       ASSERT_EQ(found[user].size(), 3U);
       for (std::size_t i = 0; i < 3; ++i) expect_same(found[user][i], expected[(user + i) % 2]);
     }
+  }
+}
+
+/// Calls prefetch() for these pairs, then segment() for those.
+struct Asked {
+  std::vector<int> early;
+  std::vector<int> segmented;
+};
+
+TEST(ExecLaw, FramesBegunEarlyChangeNoBit) {
+  const std::array<samples::Sample, 3> different{samples::load("overlap"), samples::load("four_in_a_row"),
+                                                 samples::load("dim_light")};
+  // As a loop over frames does; pairs that are never asked for; more than may be begun; none; the same one twice.
+  const std::vector<Asked> loop = {
+      {{1}, {0}},          {{2}, {1}},   {{0}, {2}},       {{1, 2}, {0}}, {{0}, {1}},
+      {{1, 2, 0, 1}, {2}}, {{}, {0, 1}}, {{2, 2}, {2, 2}}, {{0}, {1}},    {{}, {2}}};
+  for (const Config& preset : {Config(), Config::paper()}) {
+    for (const int threads : {1, 2, 5}) {
+      SCOPED_TRACE(std::to_string(threads) + " threads");
+      const Config config = different[0].suited(preset);
+      const auto& rig = different[0].calibration.rig;
+      int stages = 0;
+      Exec exec = Exec::with_threads(threads);
+      exec.observe = [&](std::string_view, const StageResult&, double) { ++stages; };
+      const Segmenter segmenter(config, rig, exec);
+      std::vector<Frame> expected;
+      int expected_stages = 0;
+      for (const samples::Sample& sample : different) {
+        expected.push_back(segmenter.segment(sample.pair()));
+        expected_stages = std::exchange(stages, 0);
+      }
+      for (const Asked& asked : loop) {
+        for (const int i : asked.early) segmenter.prefetch(different.at(static_cast<std::size_t>(i)).pair());
+        for (const int i : asked.segmented) {
+          const auto at = static_cast<std::size_t>(i);
+          expect_same(segmenter.segment(different.at(at).pair()), expected[at]);
+          EXPECT_EQ(std::exchange(stages, 0), expected_stages);
+        }
+      }
+    }
+  }
+}
+
+TEST(ExecLaw, ImagesMayChangeAfterTheyAreBegun) {
+  const samples::Sample sample = samples::load("overlap");
+  const samples::Sample other = samples::load("four_in_a_row");
+  const Segmenter segmenter(sample.suited(), sample.calibration.rig, Exec::with_threads(2));
+  const Frame expected = segmenter.segment(other.pair());
+  Image<Gray> left = samples::load("overlap").images.left.gray.clone();
+  const auto pair = [&] { return StereoPair::from(left, other.pair().right(), other.pair().left_rgb()); };
+  ASSERT_EQ(left.size(), other.pair().size());
+  segmenter.prefetch(pair());
+  const View<const Gray> fresh = other.pair().left();
+  for (int y = 0; y < left.height(); ++y) std::copy_n(fresh.row(y), left.width(), left.row(y));
+  expect_same(segmenter.segment(pair()), expected);
+}
+
+TEST(ExecLaw, SeveralThreadsMayBeginFramesOfOneSegmenter) {
+  const std::array different{samples::load("overlap"), samples::load("four_in_a_row")};
+  const Segmenter segmenter(different[0].suited(), different[0].calibration.rig, Exec::with_threads(2));
+  std::vector<Frame> expected;
+  expected.reserve(different.size());
+  for (const samples::Sample& sample : different) expected.push_back(segmenter.segment(sample.pair()));
+  std::vector<std::vector<Frame>> found(3);
+  all_at_once(3, [&](int user) {
+    for (int i = 0; i < 4; ++i) {
+      segmenter.prefetch(different.at(static_cast<std::size_t>(user + i + 1) % 2).pair());
+      found.at(static_cast<std::size_t>(user))
+          .push_back(segmenter.segment(different.at(static_cast<std::size_t>(user + i) % 2).pair()));
+    }
+  });
+  for (std::size_t user = 0; user < found.size(); ++user) {
+    ASSERT_EQ(found[user].size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) expect_same(found[user][i], expected[(user + i) % 2]);
   }
 }
 

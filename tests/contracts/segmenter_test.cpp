@@ -48,6 +48,22 @@ TEST(Segmenter, AllocatesNoImageFromTheSecondFrameOnWithSeveralThreads) {
   }
 }
 
+TEST(Segmenter, AllocatesNoImageWithFramesThatOverlap) {
+  const samples::Sample sample = samples::load("glossy_floor");
+  for (const int threads : {2, 4}) {
+    for (const Config& config : {sample.suited(), sample.suited(Config::paper())}) {
+      const Segmenter segmenter(config, sample.calibration.rig, Exec::with_threads(threads));
+      std::vector<std::int64_t> counts;
+      for (int frame = 0; frame < 8; ++frame) {
+        segmenter.prefetch(sample.pair());
+        static_cast<void>(segmenter.segment(sample.pair()));
+        counts.push_back(segmenter.exec().pool.heap_allocations());
+      }
+      EXPECT_EQ(counts[7], counts[3]);
+    }
+  }
+}
+
 TEST(Segmenter, EqualsSegment) {
   const samples::Sample sample = samples::load("overlap");
   const Segmenter segmenter(sample.suited(), sample.calibration.rig);

@@ -4,6 +4,7 @@
 
 #include <cairn/core/target.hpp>
 #include <cairn/stereo/semi_global.hpp>
+#include <cairn/stereo/semi_global_kernels.hpp>
 #include <random>
 #include <vector>
 
@@ -103,6 +104,26 @@ TEST(SemiGlobalEquivalence, HoldsForEverySplitIntoThreads) {
 TEST(SemiGlobalEquivalence, HoldsIfTheImagesAreSplitIntoChunksOfRows) {
   // Wide and deep enough for blocks of only a few rows.
   expect_equal_to_reference({400, 7}, search(0, 200), {}, {1, 3});
+}
+
+TEST(SemiGlobalEquivalence, HoldsForEverySplitIntoBands) {
+  const Size size{37, 23};
+  const ImagePair images(size, 5);
+  for (const int count : {9, 70}) {
+    const Matches expected = reference::match_semi_global(images.pair(), search(-2, count), {});
+    for (const Target target : supported_targets()) {
+      for (const int threads : {1, 3}) {
+        const Exec exec = Exec::with_threads(threads, target);
+        for (int rows = 1; rows <= size.height + 1; ++rows) {
+          EXPECT_EQ(first_difference(
+                        expected, kernels::match_in_bands(images.pair(), search(-2, count), {}, rows, exec)),
+                    "")
+              << rows << " rows, " << count << " candidates on " << name(target) << ", " << threads
+              << " threads";
+        }
+      }
+    }
+  }
 }
 
 TEST(SemiGlobalEquivalence, HoldsForEveryPenalty) {

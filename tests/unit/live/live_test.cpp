@@ -2,12 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cairn/core/error.hpp>
 #include <cairn/live/looped.hpp>
 #include <cairn/live/queued_sink.hpp>
 #include <cairn/live/runner.hpp>
 #include <cairn/live/topics.hpp>
+#include <cstring>
 #include <functional>
 #include <thread>
 
@@ -78,6 +80,16 @@ class Camera : public input::Sequence {
   std::string none_;
 };
 
+/// A camera with a gap before the second pair.
+struct Gapped : Camera {
+  using Camera::Camera;
+  std::optional<input::SequenceFrame> next() override {
+    auto frame = Camera::next();
+    if (frame) frame->after_gap = frame->index == 1;
+    return frame;
+  }
+};
+
 /// Stores the frames it is offered, and calls `then` for each.
 class Notebook : public Sink {
  public:
@@ -99,8 +111,8 @@ FollowConfig config() {
   return all;
 }
 
-LiveSummary run(Camera& camera, const LiveOptions& options, Notebook& notebook) {
-  Runner runner(camera, "camera", {}, config(), options, {});
+LiveSummary run(Camera& camera, const LiveOptions& options, Notebook& notebook, const Exec& exec = {}) {
+  Runner runner(camera, "camera", {}, config(), options, exec);
   runner.add(notebook);
   return runner.run();
 }
@@ -169,6 +181,50 @@ TEST(Runner, ANewerPairReplacesTheWaitingOne) {
     EXPECT_GT(notebook.frames[k]->pair->index, notebook.frames[k - 1]->pair->index);
 }
 
+TEST(Runner, FramesThatOverlapAreTheSameFrames) {
+  for (const bool has_tracks : {true, false}) {
+    std::array<Notebook, 2> notebooks;
+    for (const int threads : {1, 2}) {
+      Camera camera(12, 0ms, false);
+      LiveOptions options = LiveOptions::unpaced();
+      options.tracks = has_tracks;
+      run(camera, options, notebooks.at(static_cast<std::size_t>(threads - 1)), Exec::with_threads(threads));
+    }
+    ASSERT_EQ(notebooks[0].frames.size(), 12U);
+    ASSERT_EQ(notebooks[1].frames.size(), 12U);
+    for (std::size_t k = 0; k < 12; ++k) {
+      const LiveFrame& expected = *notebooks[0].frames[k];
+      const LiveFrame& found = *notebooks[1].frames[k];
+      EXPECT_EQ(found.pair->index, k);
+      EXPECT_EQ(found.step.index, expected.step.index);
+      EXPECT_EQ(found.stages.size(), expected.stages.size());
+      const View<const float> disparity = expected.step.frame.disparity.disparity_px;
+      for (int y = 0; y < disparity.height(); ++y) {
+        EXPECT_EQ(std::memcmp(found.step.frame.disparity.disparity_px.row(y), disparity.row(y),
+                              static_cast<std::size_t>(disparity.width()) * sizeof(float)),
+                  0);
+      }
+    }
+  }
+}
+
+TEST(Runner, OfACameraFramesOverlapInOrderAndLoseNoGap) {
+  Gapped camera(60, 1ms, true);
+  Notebook notebook;
+  notebook.then = [](const LiveFrame&) { std::this_thread::sleep_for(20ms); };
+  const LiveSummary summary = run(camera, {}, notebook, Exec::with_threads(2));
+  EXPECT_LT(summary.frames, 30U);
+  EXPECT_EQ(summary.frames + summary.drops.replaced, 60U);
+  std::size_t gaps = 0;
+  for (std::size_t k = 0; k < notebook.frames.size(); ++k) {
+    gaps += notebook.frames[k]->pair->after_gap ? 1 : 0;
+    if (k > 0) {
+      EXPECT_GT(notebook.frames[k]->pair->index, notebook.frames[k - 1]->pair->index);
+    }
+  }
+  EXPECT_EQ(gaps, 1U);
+}
+
 TEST(Runner, PairsThatAreTooOldAreDroppedAndCounted) {
   Camera camera(5, 1ms, true);
   camera.delay = 500ms;
@@ -179,16 +235,6 @@ TEST(Runner, PairsThatAreTooOldAreDroppedAndCounted) {
   EXPECT_EQ(summary.frames, 0U);
   EXPECT_GT(summary.drops.too_old, 0U);
 }
-
-/// A camera with a gap before the second pair.
-struct Gapped : Camera {
-  using Camera::Camera;
-  std::optional<input::SequenceFrame> next() override {
-    auto frame = Camera::next();
-    if (frame) frame->after_gap = frame->index == 1;
-    return frame;
-  }
-};
 
 TEST(Runner, AGapBeforeADroppedPairCountsForTheNext) {
   Gapped camera(40, 1ms, true);

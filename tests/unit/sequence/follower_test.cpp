@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cairn/core/error.hpp>
 
 #include <cairn/sequence/follower.hpp>
@@ -56,6 +57,41 @@ TEST(Follower, AStaticCameraGivesStaticObjectsStableIds) {
           last.tracks.list, [&](const Track& t) { return object != ObjectId::none && t.object == object; });
       ASSERT_EQ(last.ids(x, y), track == last.tracks.list.end() ? TrackId::none : track->id);
     }
+  }
+}
+
+TEST(Follower, FramesBegunEarlyAreDroppedWhenOptionsChange) {
+  const std::array different{samples::load("four_in_a_row"), samples::load("overlap")};
+  const auto sample = [&](int k) -> const samples::Sample& {
+    return different.at(static_cast<std::size_t>(k % 2));
+  };
+  const auto follow = [&](bool begins_early) {
+    Follower follower(config_for(different[0]), different[0].calibration.rig, Exec::with_threads(2));
+    std::vector<TrackedFrame> steps;
+    for (int k = 0; k < 6; ++k) {
+      if (begins_early) follower.prefetch(sample(k + 1).pair());
+      if (k == 3) {
+        FollowConfig changed = follower.config();
+        changed.segmentation.objects.min_area = 3;
+        follower.set_config(changed);
+      }
+      steps.push_back(follower.next(sample(k).pair(), frame_stamp(k)));
+    }
+    return steps;
+  };
+  const std::vector<TrackedFrame> expected = follow(false);
+  const std::vector<TrackedFrame> found = follow(true);
+  EXPECT_LT(expected[4].frame.objects.list.size(), expected[2].frame.objects.list.size())
+      << "the option has no effect";
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    SCOPED_TRACE(k);
+    EXPECT_EQ(found[k].map_from_camera.translation_m.x, expected[k].map_from_camera.translation_m.x);
+    ASSERT_EQ(found[k].frame.objects.list.size(), expected[k].frame.objects.list.size());
+    for (std::size_t i = 0; i < expected[k].frame.objects.list.size(); ++i)
+      EXPECT_EQ(found[k].frame.objects.list[i].box_px, expected[k].frame.objects.list[i].box_px);
+    ASSERT_EQ(found[k].tracks.list.size(), expected[k].tracks.list.size());
+    for (std::size_t i = 0; i < expected[k].tracks.list.size(); ++i)
+      EXPECT_EQ(found[k].tracks.list[i].position_m, expected[k].tracks.list[i].position_m);
   }
 }
 

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/pipeline/scenes_ahead.hpp>
+#include <cstring>
+#include <future>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace cairn {
+namespace {
+
+template <class T>
+Image<T> copied(View<const T> from, const Pool& pool) {
+  Image<T> copy(from.size(), pool);
+  for (int y = 0; y < from.height(); ++y) std::copy_n(from.row(y), from.width(), copy.row(y));
+  return copy;
+}
+
+template <class T>
+bool is_equal(View<const T> a, View<const T> b) {
+  if (a.size() != b.size()) return false;
+  const std::size_t bytes = static_cast<std::size_t>(a.width()) * sizeof(T);
+  for (int y = 0; y < a.height(); ++y)
+    if (std::memcmp(a.row(y), b.row(y), bytes) != 0) return false;
+  return true;
+}
+
+struct PairCopy {
+  Image<Gray> left;
+  Image<Gray> right;
+  Image<Rgb> left_rgb;
+
+  PairCopy(const StereoPair& from, const Pool& pool)
+      : left(copied(from.left(), pool)),
+        right(copied(from.right(), pool)),
+        left_rgb(copied(from.left_rgb(), pool)) {}
+  [[nodiscard]] StereoPair pair() const { return StereoPair::from(left, right, left_rgb); }
+  [[nodiscard]] bool equals(const StereoPair& pair) const {
+    return is_equal<Gray>(left, pair.left()) && is_equal<Gray>(right, pair.right()) &&
+           is_equal<Rgb>(left_rgb, pair.left_rgb());
+  }
+};
+
+Frame whole_frame(FrameInput in, const Run& run, const ObjectChoice& choose) {
+  return run.config.pipeline.method == Method::paper ? segment_by_paper(std::move(in), run)
+                                                     : segment_by_region_tree(std::move(in), run, choose);
+}
+
+}  // namespace
+
+struct ScenesAhead::Begun {
+  PairCopy images;
+  std::shared_ptr<const Config> config;
+  std::int64_t turn;
+  FrameInput in;
+  std::variant<RegionCandidates, Frame> found;  // with the method of the paper, a whole frame
+  std::vector<std::pair<std::string, double>> times;
+  std::future<void> done;  // last member: destroyed first, so the work ends before its data do
+
+  Begun(const StereoPair& pair, std::shared_ptr<const Config> used, std::int64_t number, const Pool& pool)
+      : images(pair, pool), config(std::move(used)), turn(number), in(FrameInput::from(images.pair())) {}
+
+  void start(const std::optional<StereoRig>& rig, Exec exec, bool is_observed) {
+    if (is_observed) {
+      exec.observe = [this](std::string_view stage, const StageResult&, double ms) {
+        times.emplace_back(stage, ms);
+      };
+    }
+    done = std::async(std::launch::async, [this, rig, exec = std::move(exec)] {
+      const Run run{rig, *config, exec};
+      if (config->pipeline.method == Method::paper) {
+        found = segment_by_paper(std::move(in), run);
+      } else {
+        found = grow_candidates(in, run);
+      }
+    });
+  }
+
+  Frame finish(const Run& run, const ObjectChoice& choose) {
+    done.get();
+    if (run.exec.observe) {
+      for (const auto& [stage, ms] : times) run.exec.observe(stage, StageResult(std::monostate{}), ms);
+    }
+    if (auto* frame = std::get_if<Frame>(&found)) return std::move(*frame);
+    return frame_of_candidates(in, std::move(std::get<RegionCandidates>(found)), run, choose);
+  }
+};
+
+/// What segment() works with: frees its lane at the end.
+struct ScenesAhead::Work {
+  ScenesAhead& owner;
+  Exec exec;
+  std::shared_ptr<const Config> config;
+  Lane* lane = nullptr;                          // null: more frames than lanes
+  std::unique_ptr<Begun> begun{};                // null: nothing was begun with this pair
+  std::array<std::unique_ptr<Begun>, 2> late{};  // begun before it, and never asked for
+
+  Work(ScenesAhead& of, const StereoPair& pair) : owner(of) {
+    const std::lock_guard lock(owner.mutex_);
+    exec = owner.exec_;
+    config = owner.config_;
+    validate(*config, pair.size(), owner.rig_.has_value());
+    if (owner.is_open_) take_lane(pair);
+  }
+  Work(const Work&) = delete;
+  Work& operator=(const Work&) = delete;
+  ~Work() {
+    if (lane == nullptr) return;
+    begun.reset();
+    const std::lock_guard lock(owner.mutex_);
+    lane->is_used = false;
+  }
+
+ private:
+  void take_lane(const StereoPair& pair) {
+    lane = owner.oldest([&](const Begun& one) { return one.images.equals(pair); });
+    if (lane != nullptr) {
+      begun = std::move(lane->begun);
+      while (Lane* const older = owner.oldest([&](const Begun& one) { return one.turn < begun->turn; }))
+        late.at(late[0] ? 1 : 0) = std::move(older->begun);
+    } else if (lane = owner.unused_lane(); lane == nullptr) {
+      lane = owner.oldest([](const Begun&) { return true; });
+      if (lane != nullptr) late[0] = std::move(lane->begun);
+    }
+    if (lane == nullptr) return;
+    const auto is_at_work = [](const Lane& one) { return one.begun || one.is_used; };
+    const bool is_alone = std::ranges::none_of(owner.lanes_, is_at_work);
+    lane->is_used = true;
+    // Alone, a frame that was not begun has all threads.
+    if (begun || !is_alone) {
+      exec = lane->exec;
+      exec.observe = owner.exec_.observe;
+    }
+  }
+};
+
+ScenesAhead::ScenesAhead(Config config, std::optional<StereoRig> rig, Exec exec)
+    : rig_(rig), exec_(std::move(exec)), config_(std::make_shared<const Config>(std::move(config))) {
+  validate(*config_);
+}
+
+ScenesAhead::~ScenesAhead() = default;
+
+void ScenesAhead::open_lanes() {
+  if (is_open_) return;
+  const int threads = exec_.threads();
+  const std::array<int, 2> share{(threads + 1) / 2, threads / 2};
+  const std::array<Pool, 2> pools{exec_.pool, exec_.pool.beside(1)};
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    lanes_.at(i).exec = Exec::with_threads(share.at(i), exec_.target);
+    lanes_.at(i).exec.pool = pools.at(i);
+  }
+  is_open_ = true;
+}
+
+ScenesAhead::Lane* ScenesAhead::unused_lane() {
+  for (Lane& lane : lanes_)
+    if (!lane.is_used && !lane.begun) return &lane;
+  return nullptr;
+}
+
+void ScenesAhead::begin(const StereoPair& pair) {
+  if (exec_.threads() == 1) return;
+  const std::lock_guard lock(mutex_);
+  validate(*config_, pair.size(), rig_.has_value());
+  open_lanes();
+  Lane* const lane = unused_lane();
+  if (lane == nullptr) return;
+  lane->begun = std::make_unique<Begun>(pair, config_, next_turn_++, lane->exec.pool);
+  lane->begun->start(rig_, lane->exec, exec_.observe != nullptr);
+}
+
+ScenesAhead::Lane* ScenesAhead::oldest(const std::function<bool(const Begun&)>& is_wanted) {
+  Lane* found = nullptr;
+  for (Lane& lane : lanes_) {
+    if (lane.begun && is_wanted(*lane.begun) && (found == nullptr || lane.begun->turn < found->begun->turn))
+      found = &lane;
+  }
+  return found;
+}
+
+Frame ScenesAhead::segment(const StereoPair& pair, const ObjectChoice& choose) {
+  const Work work(*this, pair);
+  const Run run{rig_, *work.config, work.exec};
+  if (work.begun) return work.begun->finish(run, choose);
+  return whole_frame(FrameInput::from(pair), run, choose);
+}
+
+void ScenesAhead::set_config(Config config) {
+  validate(config);
+  const std::lock_guard lock(mutex_);
+  config_ = std::make_shared<const Config>(std::move(config));
+  for (Lane& lane : lanes_) lane.begun.reset();
+}
+
+}  // namespace cairn
