@@ -263,7 +263,15 @@ Look base(Dice& dice, Pattern pattern, double glossy, double mirroring) {
   look.gloss = draw(dice, 0, 0.015);
   if (kind < glossy) look.gloss = draw(dice, 0.03, 0.08), look.roughness = draw(dice, 0.08, 0.5);
   if (kind < mirroring) look.gloss = draw(dice, 0.06, 0.4), look.roughness = draw(dice, 0, 0.1);
+  look.wear = dice.chance(0.25) ? 0 : draw(dice, 0, 0.15);
+  look.wear_period = static_cast<float>(dice.log_uniform(0.02, 0.2));
   return look;
+}
+
+/// Large surfaces are hardly ever of one colour everywhere.
+void worn(Look& look, Dice& dice) {
+  look.wear = dice.chance(0.08) ? 0 : draw(dice, 0.08, 0.5);
+  look.wear_period = static_cast<float>(dice.log_uniform(0.06, 0.5));
 }
 
 Look tiled(Dice& dice, Vec2 size, float joint, float variation) {
@@ -355,6 +363,7 @@ Look floor_look(Dice& dice) {
     if (kind == 7) look.colours[2] = random_colour(dice);
   }
   turn_pattern(look, dice.chance(0.5) ? 0 : draw(dice, 0, kPi));
+  worn(look, dice);
   return look;
 }
 
@@ -372,6 +381,7 @@ Look wall_look(Dice& dice) {
   const float size = kind == 9 ? draw(dice, 0.1, 0.3) : draw(dice, 0.03, 0.2);
   look.period = {size, size};
   look.share = kind == 9 ? 0.003F : draw(dice, 0.2, 0.6);
+  worn(look, dice);
   return look;
 }
 
@@ -402,11 +412,15 @@ Look ground_look(Dice& dice) {
     look.variation = 0.6F;
   }
   turn_pattern(look, draw(dice, 0, kPi));
+  worn(look, dice);
   return look;
 }
 
 Surface surface_at(const Look& look, Vec2 uv, Vec3 point) {
-  return {clamped(albedo_at(look, uv, point)), look.gloss, look.roughness};
+  Vec3 albedo = albedo_at(look, uv, point);
+  if (look.wear > 0)
+    albedo = (1 + look.wear * fractal(1 / look.wear_period * point, look.seed + 99, 5)) * albedo;
+  return {clamped(albedo), look.gloss, look.roughness};
 }
 
 }  // namespace cairn::worlds

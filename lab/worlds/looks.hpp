@@ -48,8 +48,10 @@ struct Look {
   float variation = 0;      // of tiles and pebbles: how their brightness differs
   float grain = 0;          // of tiles: strength of the wood's grain
   float shift = 0;          // of tiles: by how much of a tile each row is shifted; > 1: at random
-  bool checker = false;     // of tiles: two colours
-  Vec2 turn{1, 0};          // cosine and sine of the pattern's direction
+  float wear = 0;  // how much the brightness varies over the surface, at all scales below wear_period
+  float wear_period = 0.1F;  // metres
+  bool checker = false;      // of tiles: two colours
+  Vec2 turn{1, 0};           // cosine and sine of the pattern's direction
   Vec3 axis{0, 0, 1};
   std::uint32_t seed = 0;
   std::shared_ptr<const std::vector<std::array<std::uint8_t, 3>>>

@@ -19,7 +19,6 @@ namespace {
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr float kOffset = 2e-4F;  // m, by which a ray leaves the surface that it starts on
 constexpr float kSmooth = 0.77F;  // cosine: at sharper creases, normals are not interpolated
-constexpr int kAmbientRays = 1;   // per sample
 constexpr float kMinReflection = 0.02F;
 
 Vec3 times(Vec3 a, Vec3 b) {
@@ -144,19 +143,34 @@ class Tracer {
   std::vector<std::vector<Vec3>> normals_;  // of the points of each body, not normalised
 };
 
+/// Random numbers of one of a pixel's samples. Those that choose a light's point fill their square evenly over the
+/// samples (the R2 sequence, Roberts 2018), from a start that differs from pixel to pixel.
+struct Draws {
+  Dice dice;
+  Vec2 start;
+  int sample = 0;
+
+  [[nodiscard]] Vec2 even(int which) const {
+    const float k = static_cast<float>(sample) + 0.37F * static_cast<float>(which);
+    const float x = start.x + 0.7548777F * k + 0.31F * static_cast<float>(which);
+    const float y = start.y + 0.5698403F * k + 0.73F * static_cast<float>(which);
+    return {x - std::floor(x), y - std::floor(y)};
+  }
+};
+
 /// Light along rays.
 class Light {
  public:
   Light(const Scene& scene, const Tracer& tracer) : scene_(scene), tracer_(tracer) {}
 
-  [[nodiscard]] Vec3 along(Vec3 from, Vec3 direction, Dice& dice, bool reflects = true) const {
+  [[nodiscard]] Vec3 along(Vec3 from, Vec3 direction, Draws& draws, bool reflects = true) const {
     const Hit hit = tracer_.hit(from, direction);
     if (hit.body == nullptr)
       return mix(scene_.sky_low, scene_.sky_high, std::clamp(2 * direction.z, 0.0F, 1.0F));
     const Surface surface = surface_of(hit);
     if (hit.body->is_bright) return 3 * surface.albedo;
     const Vec3 at = hit.point + kOffset * hit.geometric;
-    Vec3 light = times(surface.albedo, falling_on(at, hit.normal, dice));
+    Vec3 light = times(surface.albedo, falling_on(at, hit.normal, draws));
     if (!reflects || surface.gloss <= 0) return light;
     // Schlick's approximation; a rough surface mirrors less clearly.
     const float grazing = 1 + dot(direction, hit.normal);
@@ -166,9 +180,9 @@ class Light {
     if (mirrored < kMinReflection) return light;
     const Vec3 mirror = direction - 2 * dot(direction, hit.normal) * hit.normal;
     const float spread = surface.roughness * surface.roughness;
-    const float first = draw(dice, 0, 1);
-    const Vec3 scattered = unit(mirror + spread * around(hit.normal, first, draw(dice, 0, 1)));
-    return (1 - mirrored) * light + mirrored * along(at, scattered, dice, false);
+    const float first = draw(draws.dice, 0, 1);
+    const Vec3 scattered = unit(mirror + spread * around(hit.normal, first, draw(draws.dice, 0, 1)));
+    return (1 - mirrored) * light + mirrored * along(at, scattered, draws, false);
   }
 
  private:
@@ -185,11 +199,12 @@ class Light {
   }
 
   /// What falls on a point: lamps with soft shadows, and ambient light where nothing near blocks it.
-  [[nodiscard]] Vec3 falling_on(Vec3 at, Vec3 normal, Dice& dice) const {
+  [[nodiscard]] Vec3 falling_on(Vec3 at, Vec3 normal, const Draws& draws) const {
     Vec3 sum;
+    int which = 0;
     for (const Lamp& lamp : scene_.lamps) {
-      const float across = draw(dice, -0.5, 0.5);
-      const float along = draw(dice, -0.5, 0.5);
+      const Vec2 drawn = draws.even(++which);
+      const float across = drawn.x - 0.5F, along = drawn.y - 0.5F;
       Vec3 towards = lamp.at + Vec3{lamp.size_m * across, lamp.size_m * along, 0} - at;
       float fading = 1;
       float reach = kFar;
@@ -204,14 +219,9 @@ class Light {
       if (facing <= 0 || !tracer_.is_free(at, direction, reach - kOffset)) continue;
       sum = sum + facing * fading * lamp.power;
     }
-    int free = 0;
-    const float u = draw(dice, 0, 1);
-    const float v = draw(dice, 0, 1);
-    for (int k = 0; k < kAmbientRays; ++k) {
-      const float shifted = v + fraction(k, kAmbientRays);
-      free += tracer_.is_free(at, around(normal, u, shifted), scene_.reach_m) ? 1 : 0;
-    }
-    return sum + (0.15F + 0.85F * fraction(free, kAmbientRays)) * scene_.ambient;
+    const Vec2 drawn = draws.even(0);
+    const bool is_free = tracer_.is_free(at, around(normal, drawn.x, drawn.y), scene_.reach_m);
+    return sum + (is_free ? 1.0F : 0.15F) * scene_.ambient;
   }
 
   const Scene& scene_;
@@ -233,13 +243,16 @@ Picture picture_of(const Scene& scene, const Tracer& tracer, bool is_right, int 
   for (int y = 0; y < rig.size.height; ++y) {
     for (int x = 0; x < rig.size.width; ++x, ++at) {
       Dice dice = Dice(scene.seed).fork(2 * at + (is_right ? 1 : 0));
+      Draws draws{dice, {draw(dice, 0, 1), draw(dice, 0, 1)}};
+      draws.dice = dice.fork(1);
       Vec3 sum;
       for (int k = 0; k < strata * strata; ++k) {
+        draws.sample = k;
         const float dx = fraction(k % strata, strata) + draw(dice, 0, 1.0 / strata) - 0.5F;
         const float dy = fraction(k / strata, strata) + draw(dice, 0, 1.0 / strata) - 0.5F;
         const Vec3 direction =
             unit(direction_of(rig, static_cast<float>(x) + dx, static_cast<float>(y) + dy - rows));
-        const Vec3 seen = light.along(eye, direction, dice);
+        const Vec3 seen = light.along(eye, direction, draws);
         // A lamp in a mirror must not outshine its neighbours by itself.
         sum = sum + Vec3{std::min(seen.x, 8.0F), std::min(seen.y, 8.0F), std::min(seen.z, 8.0F)};
       }

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kTries = 24;        // places tried for a thing
 constexpr float kLevel = 0.015F;  // m, by which the ground below a thing may differ
+constexpr float kSmall = 0.07F;   // half of a side, of the image's width; smaller things are rare
 constexpr double kModels = 0.35;  // share of models among the things indoors
 
 // ---- what stands where ----
@@ -87,9 +88,11 @@ class Builder {
 
   void build() {
     const bool is_outdoor = dice_.chance(options_.outdoor_share);
-    world_.place = is_outdoor ? Place::outdoor
-                              : dice_.pick({Place::room, Place::room, Place::room, Place::table, Place::table,
-                                            Place::shelf, Place::clutter, Place::corridor});
+    world_.place = is_outdoor
+                       ? Place::outdoor
+                       : dice_.pick({Place::room, Place::room, Place::room, Place::room, Place::room,
+                                     Place::table, Place::table, Place::table, Place::table, Place::clutter,
+                                     Place::clutter, Place::shelf, Place::clutter, Place::corridor});
     switch (world_.place) {
       case Place::outdoor:
         outdoors();
@@ -244,23 +247,29 @@ class Builder {
     return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
   }
 
-  [[nodiscard]] bool is_free(const Footprint& footprint, float bottom, float top, float gap) const {
+  [[nodiscard]] bool is_free(const Footprint& footprint, float bottom, float top, float gap,
+                             std::size_t support) const {
     return std::ranges::all_of(standing_, [&](const Standing& other) {
-      return other.top <= bottom + 1e-3F || other.bottom >= top || are_apart(other.footprint, footprint, gap);
+      return other.body == support || other.top <= bottom + 1e-3F || other.bottom >= top ||
+             are_apart(other.footprint, footprint, gap);
     });
   }
 
   /// Most things are in view and neither tiny nor larger than the image.
-  bool is_of_good_size(const Mesh& mesh, Vec2 at, float bottom, bool is_cut) {
+  bool is_of_good_size(const Mesh& mesh, Vec2 at, float bottom, const std::string& how) {
     const auto [low, high] = bounds(mesh);
     const Pixel middle = pixel_of({at.x, at.y, bottom + high.z / 2});
     const Size size = world_.scene.rig.size;
     const float w = static_cast<float>(size.width), h = static_cast<float>(size.height);
     if (middle.depth < nearest_) return false;
-    const float half = world_.scene.rig.focal_px * longest(mesh) / middle.depth / 2;
+    std::array sides{high.x - low.x, high.y - low.y, high.z - low.z};
+    std::ranges::sort(sides);
+    const float of_metre = world_.scene.rig.focal_px / middle.depth / 2;
+    const float half = of_metre * sides[2];
     if (half > 0.5F * w) return false;
-    if (half < 0.02F * w && !dice_.chance(0.12)) return false;
-    const float margin = is_cut ? -0.8F * half : 0.1F * half;
+    const float least = how == "on" || how == "shelf" ? 0.5F * kSmall : kSmall;
+    if (of_metre * std::sqrt(sides[1] * sides[2]) < least * w && !dice_.chance(0.06)) return false;
+    const float margin = how == "edge" ? -0.8F * half : 0.1F * half;
     return middle.x > margin && middle.x < w - margin && middle.y > margin && middle.y < h - margin;
   }
 
@@ -271,17 +280,18 @@ class Builder {
   }
 
   /// Puts it there; false if it would be in another's place.
-  bool put(Made& made, Vec2 at, float yaw, float bottom, float gap, const std::string& how) {
+  bool put(Made& made, Vec2 at, float yaw, float bottom, float gap, const std::string& how,
+           std::size_t support = std::numeric_limits<std::size_t>::max()) {
     const auto [low, high] = bounds(made.mesh);
     const Footprint footprint{at, {(high.x - low.x) / 2, (high.y - low.y) / 2}, yaw};
     const float top = bottom + high.z;
-    if (!is_free(footprint, bottom, top, gap)) return false;
+    if (!is_free(footprint, bottom, top, gap, support)) return false;
     // Nothing in the camera's face.
     const Vec3 eye = world_.scene.rig.eye;
     const Vec2 apart{eye.x - at.x, eye.y - at.y};
     const float radius = std::hypot(footprint.half.x, footprint.half.y);
     if (std::hypot(apart.x, apart.y) < radius + nearest_ && eye.z < top + nearest_) return false;
-    if (!is_of_good_size(made.mesh, at, bottom, how == "edge")) return false;
+    if (!is_of_good_size(made.mesh, at, bottom, how)) return false;
     if (table_ && bottom == 0 && !is_inside(footprint, *table_)) return false;
     if (world_.things.size() >= 250) return false;
     const int id = static_cast<int>(world_.things.size()) + 1;
@@ -296,28 +306,34 @@ class Builder {
     return true;
   }
 
-  /// On top of a thing: where its surface is level.
-  bool put_on(Made& made, const Standing& below, const std::string& how) {
-    const auto [low, high] = bounds(made.mesh);
-    const Vec2 half{(high.x - low.x) / 2, (high.y - low.y) / 2};
-    const Mesh support = world_.scene.bodies[below.body].mesh;
-    for (int k = 0; k < kTries; ++k) {
+  /// The height of a thing about a point, if it is level there.
+  std::optional<float> level_at(const Standing& below, Vec2 at, float reach) const {
+    const Mesh& support = world_.scene.bodies[below.body].mesh;
+    float least = std::numeric_limits<float>::max(), most = -least;
+    const Footprint foot{at, {reach, reach}, 0};
+    const auto corners = foot.corners();
+    for (const Vec2 p : {at, corners[0], corners[1], corners[2], corners[3]}) {
+      const auto z = height_at(support, p.x, p.y);
+      if (!z) return std::nullopt;
+      least = std::min(least, *z), most = std::max(most, *z);
+    }
+    if (most - least > kLevel || most < below.bottom + 0.02F) return std::nullopt;
+    return most;
+  }
+
+  /// On top of something that is level somewhere, as large as that allows.
+  bool add_on_top() {
+    for (int k = 0; k < 2 * kTries; ++k) {
+      const Standing below = dice_.pick(standing_);
       const auto corners = below.footprint.corners();
       const float u = draw(dice_, 0.1, 0.9), v = draw(dice_, 0.1, 0.9);
       const Vec2 at{corners[0].x + u * (corners[1].x - corners[0].x) + v * (corners[3].x - corners[0].x),
                     corners[0].y + u * (corners[1].y - corners[0].y) + v * (corners[3].y - corners[0].y)};
-      const float yaw = draw(dice_, 0, 2 * kPi);
-      const Footprint foot{at, {0.6F * half.x, 0.6F * half.y}, yaw};
-      float least = std::numeric_limits<float>::max(), most = -least;
-      bool is_there = true;
-      auto points = foot.corners();
-      for (const Vec2 p : {at, points[0], points[1], points[2], points[3]}) {
-        const auto z = height_at(support, p.x, p.y);
-        is_there = is_there && z.has_value();
-        if (z) least = std::min(least, *z), most = std::max(most, *z);
-      }
-      if (!is_there || most - least > kLevel || most < below.bottom + 0.02F) continue;
-      if (put(made, at, yaw, most, 0.005F, how)) return true;
+      const float room = std::min(below.footprint.half.x, below.footprint.half.y) * draw(dice_, 0.2, 0.9);
+      const auto height = level_at(below, at, 0.6F * room);
+      if (!height) continue;
+      Made made = thing(2.2F * room, true);
+      if (put(made, at, draw(dice_, 0, 2 * kPi), *height, 0.005F, "on", below.body)) return true;
     }
     return false;
   }
@@ -361,55 +377,58 @@ class Builder {
     float far = 6;
     double at_wall = 0.15;
     double on = 0.25;
-    double touching = 0.2;
+    double touching = 0.15;
     double at_edge = 0.12;
   };
+
+  /// Next to another thing, moved towards it until it touches.
+  bool put_touching(Made& made, float bottom) {
+    const Standing near = dice_.pick(standing_);
+    if (near.bottom != bottom) return false;
+    const auto [low, high] = bounds(made.mesh);
+    const float yaw = dice_.chance(0.5) ? near.footprint.yaw : draw(dice_, 0, 2 * kPi);
+    const Vec3 side = polar(1, draw(dice_, 0, 2 * kPi));
+    Footprint foot{{}, {(high.x - low.x) / 2, (high.y - low.y) / 2}, yaw};
+    const auto move_to = [&](float distance) {
+      foot.centre = {near.footprint.centre.x + distance * side.x,
+                     near.footprint.centre.y + distance * side.y};
+    };
+    constexpr float kStep = 0.01F;
+    float distance =
+        std::hypot(near.footprint.half.x, near.footprint.half.y) + std::hypot(foot.half.x, foot.half.y);
+    for (; distance > 0; distance -= kStep) {
+      move_to(distance);
+      if (!are_apart(foot, near.footprint, 0.004F)) break;
+    }
+    move_to(distance + kStep);
+    return put(made, foot.centre, yaw, bottom, 0, "touch");
+  }
 
   void fill(float bottom, const Amount& amount) {
     for (int k = 0; k < amount.count; ++k) {
       const float size =
           amount.most_m > 0 ? static_cast<float>(dice_.log_uniform(amount.least_m, amount.most_m)) : 0;
       const double way = dice_.unit();
-      const bool goes_on = !standing_.empty() && way >= amount.at_wall && way < amount.at_wall + amount.on;
-      Made made =
-          thing(goes_on && amount.most_m <= 0 ? draw(dice_, 0.08, 0.4) : size, goes_on || amount.most_m > 0);
-      for (int t = 0; t < kTries; ++t) {
-        if (way < amount.at_wall && t < kTries / 2) {
+      if (!standing_.empty() && way < amount.on && add_on_top()) continue;
+      const bool at_wall = way < amount.on + amount.at_wall;
+      const bool touches =
+          !at_wall && !standing_.empty() && way < amount.on + amount.at_wall + amount.touching;
+      const bool at_edge = dice_.chance(amount.at_edge);
+      Made made = thing(size, amount.most_m > 0);
+      for (int t = 0; t < 2 * kTries; ++t) {
+        // What fits nowhere is made smaller.
+        if (t % 12 == 11) made.mesh = scaled(std::move(made.mesh), {0.7F, 0.7F, 0.7F});
+        if (at_wall && t < kTries) {
           if (put_at_wall(made, bottom, amount.far)) break;
           continue;
         }
-        if (goes_on && t < 4) {
-          const Standing below = dice_.pick(standing_);
-          if (put_on(made, below, "on")) break;
+        if (touches && t < kTries) {
+          if (put_touching(made, bottom)) break;
           continue;
         }
-        const bool touches = !standing_.empty() && way < amount.at_wall + amount.on + amount.touching;
-        if (touches && t < kTries / 2) {
-          const Standing near = dice_.pick(standing_);
-          const auto [low, high] = bounds(made.mesh);
-          const float yaw = dice_.chance(0.5) ? near.footprint.yaw : draw(dice_, 0, 2 * kPi);
-          const float side = draw(dice_, 0, 2 * kPi);
-          // From far to near, until it touches.
-          const float from = std::hypot(near.footprint.half.x, near.footprint.half.y) +
-                             std::hypot(high.x - low.x, high.y - low.y) / 2;
-          float distance = from;
-          Footprint foot{{}, {(high.x - low.x) / 2, (high.y - low.y) / 2}, yaw};
-          for (; distance > 0; distance -= 0.01F) {
-            foot.centre = {near.footprint.centre.x + distance * std::cos(side),
-                           near.footprint.centre.y + distance * std::sin(side)};
-            if (!are_apart(foot, near.footprint, 0.004F)) break;
-          }
-          distance += 0.01F;
-          const Vec2 at{near.footprint.centre.x + distance * std::cos(side),
-                        near.footprint.centre.y + distance * std::sin(side)};
-          if (near.bottom == bottom && put(made, at, yaw, bottom, 0, "touch")) break;
-          continue;
-        }
-        const bool at_edge = dice_.chance(amount.at_edge);
-        // What fits nowhere is made smaller.
-        if (t % 8 == 7) made.mesh = scaled(std::move(made.mesh), {0.6F, 0.6F, 0.6F});
         const auto at = spot(bottom, amount.far, at_edge);
-        if (at && put(made, *at, draw(dice_, 0, 2 * kPi), bottom, 0.02F, at_edge ? "edge" : "free")) break;
+        const float yaw = draw(dice_, 0, 2 * kPi);
+        if (at && put(made, *at, yaw, bottom, 0.02F, at_edge ? "edge" : "free")) break;
       }
     }
   }
@@ -734,8 +753,8 @@ class Builder {
     Sensor& sensor = world_.sensor;
     sensor.blur_px = draw(dice_, 0.3, 0.9);
     sensor.vignetting = dice_.chance(0.5) ? draw(dice_, 0, 0.35) : 0;
-    sensor.shot_noise = static_cast<float>(dice_.log_uniform(0.004, 0.03));
-    sensor.read_noise = static_cast<float>(dice_.log_uniform(0.001, 0.012));
+    sensor.shot_noise = static_cast<float>(dice_.log_uniform(0.003, 0.016));
+    sensor.read_noise = static_cast<float>(dice_.log_uniform(0.0004, 0.004));
     sensor.gamma = draw(dice_, 1.8, 2.4);
     sensor.right_gain = 1 + (dice_.chance(0.4) ? draw(dice_, -0.06, 0.06) : draw(dice_, -0.015, 0.015));
     sensor.right_offset = dice_.chance(0.3) ? draw(dice_, -0.012, 0.012) : 0;
