@@ -19,6 +19,8 @@ namespace {
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr float kOffset = 2e-4F;  // m, by which a ray leaves the surface that it starts on
 constexpr float kSmooth = 0.77F;  // cosine: at sharper creases, normals are not interpolated
+constexpr float kBlocked =
+    0.35F;  // of the ambient light, where something near is in its way: it reflects some
 constexpr float kMinReflection = 0.02F;
 
 Vec3 times(Vec3 a, Vec3 b) {
@@ -122,6 +124,7 @@ class Tracer {
           cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
       for (const std::uint32_t corner : t) sums[corner] = sums[corner] + twice_area;
     }
+    for (Vec3& sum : sums) sum = unit(sum);
     normals_.push_back(std::move(sums));
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(tree_, geometry);
@@ -132,7 +135,7 @@ class Tracer {
                                   Vec3 geometric) const {
     const auto& t = scene_.bodies[body].mesh.triangles[triangle];
     const auto& n = normals_[body];
-    const Vec3 sum = (1 - u - v) * unit(n[t[0]]) + u * unit(n[t[1]]) + v * unit(n[t[2]]);
+    const Vec3 sum = (1 - u - v) * n[t[0]] + u * n[t[1]] + v * n[t[2]];
     const Vec3 smooth = unit(sum);
     return dot(smooth, geometric) > kSmooth ? smooth : geometric;
   }
@@ -140,7 +143,7 @@ class Tracer {
   const Scene& scene_;
   RTCDevice device_;
   RTCScene tree_;
-  std::vector<std::vector<Vec3>> normals_;  // of the points of each body, not normalised
+  std::vector<std::vector<Vec3>> normals_;  // of the points of each body
 };
 
 /// Random numbers of one of a pixel's samples. Those that choose a light's point fill their square evenly over the
@@ -221,7 +224,7 @@ class Light {
     }
     const Vec2 drawn = draws.even(0);
     const bool is_free = tracer_.is_free(at, around(normal, drawn.x, drawn.y), scene_.reach_m);
-    return sum + (is_free ? 1.0F : 0.15F) * scene_.ambient;
+    return sum + (is_free ? 1.0F : kBlocked) * scene_.ambient;
   }
 
   const Scene& scene_;

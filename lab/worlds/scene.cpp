@@ -437,13 +437,13 @@ class Builder {
 
   void light_room(float width, float depth, float height) {
     Scene& scene = world_.scene;
-    const float level = static_cast<float>(dice_.log_uniform(0.15, 1.2));
+    const float level = static_cast<float>(dice_.log_uniform(0.25, 1.2));
     const Vec3 tint{draw(dice_, 0.85, 1.1), draw(dice_, 0.9, 1.05), draw(dice_, 0.75, 1.15)};
     const int lamps = dice_.between(1, 3);
     for (int k = 0; k < lamps; ++k) {
       const float x = draw(dice_, 0.1, 0.9) * width, y = draw(dice_, -0.4, 0.4) * depth;
       scene.lamps.push_back({{x, y, height - 0.02F},
-                             static_cast<float>(dice_.log_uniform(0.08, 1.2)),
+                             static_cast<float>(dice_.log_uniform(0.06, 0.6)),
                              (draw(dice_, 1, 4) / static_cast<float>(lamps)) * level * tint});
     }
     if (dice_.chance(0.25)) {  // sun through a window
