@@ -5,6 +5,7 @@
 #include <cstring>
 #include <future>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -128,12 +129,12 @@ struct ScenesAhead::Work {
     if (lane == nullptr) return;
     const auto is_at_work = [](const Lane& one) { return one.begun || one.is_used; };
     const bool is_alone = std::ranges::none_of(owner.lanes_, is_at_work);
-    lane->is_used = true;
     // Alone, a frame that was not begun has all threads.
     if (begun || !is_alone) {
       exec = lane->exec;
       exec.observe = owner.exec_.observe;
     }
+    lane->is_used = true;  // last: the destructor frees it
   }
 };
 
@@ -169,8 +170,13 @@ void ScenesAhead::begin(const StereoPair& pair) {
   open_lanes();
   Lane* const lane = unused_lane();
   if (lane == nullptr) return;
-  lane->begun = std::make_unique<Begun>(pair, config_, next_turn_++, lane->exec.pool);
-  lane->begun->start(rig_, lane->exec, exec_.observe != nullptr);
+  auto begun = std::make_unique<Begun>(pair, config_, next_turn_++, lane->exec.pool);
+  try {
+    begun->start(rig_, lane->exec, exec_.observe != nullptr);
+  } catch (const std::system_error&) {  // the system has no thread left: the frame waits for its turn
+    return;
+  }
+  lane->begun = std::move(begun);
 }
 
 ScenesAhead::Lane* ScenesAhead::oldest(const std::function<bool(const Begun&)>& is_wanted) {
