@@ -89,12 +89,12 @@ def jobs_of(sets):
     return [(frame, colour, name) for name, frames in sets.items() for frame in frames for colour in ("colour", "grey")]
 
 
-def run_tool(tool, work, jobs, files, *options):
-    """The tool's output for each job. files(i): the files of job i. Runs two processes; @ is replaced by the
+def run_tool(tool, work, jobs, files, *options, parts=2):
+    """The tool's output for each job. files(i): the files of job i. Runs `parts` processes; @ is replaced by the
     process's number."""
     processes = []
-    for part in range(2):
-        lines = [f"{frame} {colour} {files(i)}\n" for i, (frame, colour, _) in enumerate(jobs) if i % 2 == part]
+    for part in range(parts):
+        lines = [f"{frame} {colour} {files(i)}\n" for i, (frame, colour, _) in enumerate(jobs) if i % parts == part]
         (work / f"jobs{part}").write_text("".join(lines))
         command = [tool, work / f"jobs{part}", *(str(o).replace("@", str(part)) for o in options)]
         processes.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
@@ -105,7 +105,7 @@ def run_tool(tool, work, jobs, files, *options):
             sys.exit(process.returncode)
         for line in out.splitlines():
             row = line.split(" ")
-            rows[2 * int(row[0]) + part] = row
+            rows[parts * int(row[0]) + part] = row
     return rows
 
 

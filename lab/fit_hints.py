@@ -1,133 +1,263 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the network of cairn/regions/object_hints.hpp to the fit set.
+"""Fits the network of cairn/regions/object_hints.hpp.
 
-fit_hints.py TOOL DATA [--rooms FOLDER] [--work FOLDER] [--out FOLDER] [--steps N]
+fit_hints.py gather TOOL STORE FRAMES...: the inputs of the network and the truth for folders of frames, in colour and
+in grey, into the folder STORE.
+fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--width W] [--worlds N]: fits to such stores.
 
-For each cell of about 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's
-outline, and the centre and size of its object. It is fitted once without each of two halves of the scenes, so that
-fit.py has for each frame the output of a network that has not seen it, and once on all scenes. It is then quantised:
-weights to 8 bits per output channel, activations to integers. Everything is seeded and each network uses one thread:
-the same frames give the same weights on the same processor.
+For each cell of 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
+and the centre and size of its object. It is then quantised: weights to 8 bits per output channel, activations to
+integers. What is drawn in a step depends on its number only, and a checkpoint is written every ten minutes: a fit that was
+stopped goes on, to the same weights as one that was not. A graphics processor is used if PyTorch finds one; then the
+last bits of the weights differ.
 """
 import argparse
+import os
 import pathlib
-import subprocess
-import sys
 import time
 
 import fitted_files
 import numpy as np
 
-from fit import HALVES, SEED, WEIGHTS, fit_sets, fold_of, jobs_of, run_tool
+from fit import SEED, frames_in, run_tool
 
-BATCH = 12
+BATCH = 24  # half of it in colour, half in grey
 RATE, DECAY = 3e-3, 2e-3
 CLOSE_UPS = 0.3  # share of the samples that simulate a narrower field of view
-WIDTH, HEIGHT = 160, 120  # cells of the canvas that frames are fitted on
+PASTES = 0.35  # chance, taken twice, that an object of another frame is pasted
+WIDTH, HEIGHT = 160, 120  # cells of a frame
 CHANNELS = 12
 FIRST, SECOND, THIRD, LAST = 16, 40, 48, 32  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
 UNIT = 64  # scale of the input
+DONT_CARE = 255
 GREATEST = 8191  # activation: kMaxActivation
 # Outputs: log-odds of an object and of an outline, quantised to 1/16; offset to the centre in units of 16 cells,
 # quantised to 1/8 cell; log₂ of the size, quantised to 1/16.
 STEPS_PER_UNIT = [16, 16, 128, 128, 16]
+CHECKPOINT_SECONDS = 600
+CALIBRATION = 200  # frames that show how large activations are
 
 
-def load(path, jobs):
-    """For each job: channels, true objects, whether the truth is partial."""
-    frames = [None] * len(jobs)
-    for part in range(2):
-        values, at = np.fromfile(f"{path}{part}", np.int16), 0
-        while at < len(values):
-            job, width, height, partial = (int(v) for v in values[at:at + 4])
-            cells = values[at + 4:at + 4 + width * height * CHANNELS].reshape(height, width, CHANNELS)
-            at += 4 + width * height * CHANNELS
-            truth = values[at:at + width * height].reshape(height, width)
-            at += width * height
-            frames[2 * job + part] = (np.ascontiguousarray(cells.transpose(2, 0, 1)), truth, bool(partial))
-    return frames
+# ---- frames
+
+def gather(tool, store, frames):
+    """Writes `cells` (int16) and `truth` (uint8: 0 no object) of frames 0, 1 … in colour and in grey, in turn."""
+    parts = os.cpu_count()
+    store.mkdir(parents=True, exist_ok=True)
+    jobs = [(frame, colour, "") for frame in frames for colour in ("colour", "grey")]
+    run_tool(tool, store, jobs, lambda i: "- - -", "--inputs", store / "inputs@", parts=parts)
+    cells = np.lib.format.open_memmap(store / "cells.npy", "w+", np.int16, (len(jobs), CHANNELS, HEIGHT, WIDTH))
+    truth = np.lib.format.open_memmap(store / "truth.npy", "w+", np.uint8, (len(jobs), HEIGHT, WIDTH))
+    area = WIDTH * HEIGHT
+    record = 4 + area * (CHANNELS + 1)
+    for part in range(parts):
+        values = np.fromfile(store / f"inputs{part}", np.int16).reshape(-1, record)
+        for row in values:
+            if (row[1], row[2], row[3]) != (WIDTH, HEIGHT, 0):
+                raise SystemExit("fit_hints.py: frames of 4:3 with complete truth are expected")
+            job = parts * int(row[0]) + part
+            cells[job] = row[4:4 + area * CHANNELS].reshape(HEIGHT, WIDTH, CHANNELS).transpose(2, 0, 1)
+            truth[job] = np.where(row[4 + area * CHANNELS:] < 0, DONT_CARE, row[4 + area * CHANNELS:]).reshape(HEIGHT, WIDTH)
+        (store / f"inputs{part}").unlink()
 
 
-DOWN, ACROSS = np.mgrid[:HEIGHT, :WIDTH].astype(np.float32)
+class Frames:
+    """All frames of the stores; number 2i is frame i in colour, 2i + 1 in grey."""
+
+    def __init__(self, stores, limit, device):
+        import torch
+
+        self.device = device
+        cells = [np.load(store / "cells.npy", mmap_mode="r") for store in stores]
+        truth = [np.load(store / "truth.npy", mmap_mode="r") for store in stores]
+        cells[0], truth[0] = cells[0][:2 * limit], truth[0][:2 * limit]
+        self.starts = np.cumsum([0, *map(len, cells)])
+        self.cells, self.truth = cells, truth
+        if device.type != "cpu":  # all of them fit there
+            self.cells = torch.cat([torch.from_numpy(np.ascontiguousarray(c)).to(device) for c in cells])
+            self.truth = torch.cat([torch.from_numpy(np.ascontiguousarray(t)).to(device) for t in truth])
+
+    def __len__(self):
+        return int(self.starts[-1]) // 2
+
+    def take(self, numbers):
+        import torch
+
+        if self.device.type != "cpu":
+            at = torch.as_tensor(numbers, device=self.device)
+            return self.cells[at], self.truth[at]
+        which = np.searchsorted(self.starts, numbers, "right") - 1
+        pick = [(w, n - self.starts[w]) for w, n in zip(which, numbers)]
+        return (torch.from_numpy(np.stack([self.cells[w][k] for w, k in pick])),
+                torch.from_numpy(np.stack([self.truth[w][k] for w, k in pick])))
 
 
-def targets(truth):
-    """Per cell: object, outline, centre (2), log₂ of the size, root of the size, known."""
-    out = np.zeros((7, HEIGHT, WIDTH), np.float32)
-    out[0], out[6] = truth > 0, truth >= 0
-    for down, across in ((0, 1), (1, 0)):
-        here, there = truth[:HEIGHT - down, :WIDTH - across], truth[down:, across:]
-        parts = (here != there) & (here >= 0) & (there >= 0)
-        out[1, :HEIGHT - down, :WIDTH - across] += parts
-        out[1, down:, across:] += parts
-    out[1] = out[1] > 0
-    which = np.maximum(truth, 0)
-    flat = which.ravel()
-    size = np.bincount(flat).astype(np.float32)
-    least = np.maximum(size, 1)
-    table = np.stack([np.bincount(flat, ACROSS.ravel()) / least, np.bincount(flat, DOWN.ravel()) / least,
-                      np.log2(least), np.sqrt(size)])
-    table[:, 0] = 0
-    out[2:6] = table[:, which]
-    return out
+# ---- samples
 
-
-def see_closer(data, scale, inside):
-    """A crop as a camera with a narrower field of view would see it; recomputes the inputs that hint_input()
-    normalises by the image."""
-    brightness = data[0][inside]
-    data[0][inside] = np.clip((brightness - brightness.mean()) / (brightness.std() + 0.1), -4, 4)
-    matched = inside & (data[4] > 0)
-    if matched.any():
-        data[[3, 7]] = np.minimum(data[[3, 7]] / max(np.quantile(data[3][matched], 0.98), 0.02), 2)
-    data[5:7] = np.clip(data[5:7] * scale, -1, 3)  # disparity differences
-    data[10][inside] = np.broadcast_to(2 * DOWN[:, :1] / HEIGHT - 1, inside.shape)[inside]
-
-
-class Samples:
-    """Augmented frames on the canvas: mirrored, scaled, shifted, brightened, without a floor …"""
+class Sampler:
+    """Batches of frames that are mirrored, scaled, shifted, brightened, without a floor …"""
 
     def __init__(self, frames):
-        self.frames, self.random = frames, np.random.RandomState(SEED)
+        import torch
 
-    def sample(self, i):
-        cells, truth, partial = self.frames[i]
-        height, width = truth.shape
-        random = self.random
-        narrower = random.rand() < CLOSE_UPS
-        scale = np.exp(random.uniform(0.25, 0.8) if narrower else random.uniform(-0.25, 0.25)) * WIDTH / width
-        x = (np.arange(WIDTH) + 0.5 - WIDTH / 2 - random.uniform(-0.1, 0.1) * WIDTH) / scale + width / 2
-        y = (np.arange(HEIGHT) + 0.5 - HEIGHT / 2 - random.uniform(-0.1, 0.1) * HEIGHT) / scale + height / 2
-        if random.rand() < 0.5:
-            x = width - x
-        x, y = np.floor(x).astype(int), np.floor(y).astype(int)
-        outside = ~(((y >= 0) & (y < height))[:, None] & ((x >= 0) & (x < width))[None])
-        at = np.clip(y, 0, height - 1)[:, None] * width + np.clip(x, 0, width - 1)[None]
-        data = cells.reshape(CHANNELS, -1).take(at.ravel(), axis=1).reshape(CHANNELS, HEIGHT, WIDTH)
-        data = data.astype(np.float32) / UNIT
-        data[:, outside] = 0
-        ids = truth.ravel()[at]
-        ids[outside] = -1
-        if narrower:
-            see_closer(data, scale * width / WIDTH, ~outside)
-        if partial:
-            ids[ids == 0] = -1  # may be an unlabelled object
-        data[0] = data[0] * random.uniform(0.8, 1.25) + random.uniform(-0.2, 0.2)
-        data[0] += random.standard_normal((HEIGHT, WIDTH)).astype(np.float32) * random.uniform(0, 0.06)
-        data[1:3] *= random.uniform(0.7, 1.4)
-        nearer = random.uniform(0.85, 1.15)
-        data[[3, 7]] *= nearer
-        data[5:7] *= random.uniform(0.8, 1.25)
-        if random.rand() < 0.1:
-            data[[5, 7]] = 0  # no floor
-        if random.rand() < 0.1:
-            data[6] = 0  # no background
-        return data, targets(ids)
+        self.frames = frames
+        self.down = torch.arange(HEIGHT, device=frames.device, dtype=torch.float32)[:, None]
+        self.across = torch.arange(WIDTH, device=frames.device, dtype=torch.float32)[None]
+
+    def numbers(self, step):
+        """Every frame comes once in a round."""
+        half, count = BATCH // 2, len(self.frames)
+        at = np.arange(step * half, (step + 1) * half)
+        order = {r: np.random.RandomState([SEED, r]).permutation(count) for r in np.unique(at // count)}
+        scenes = np.array([order[i // count][i % count] for i in at])
+        return np.concatenate([2 * scenes, 2 * np.roll(scenes, half // 2) + 1])
+
+    def batch(self, step):
+        """Inputs and targets."""
+        import torch
+
+        random = torch.Generator(self.frames.device).manual_seed(1000003 * SEED + step)
+
+        def uniform(low, high, shape=(BATCH, 1, 1)):
+            return low + (high - low) * torch.rand(*shape, generator=random, device=self.frames.device)
+
+        cells, truth = self.frames.take(self.numbers(step))
+        narrower = uniform(0, 1) < CLOSE_UPS
+        scale = torch.exp(torch.where(narrower, uniform(0.25, 0.8), uniform(-0.25, 0.25)))
+        x = (self.across + 0.5 - WIDTH / 2 - uniform(-0.1, 0.1) * WIDTH) / scale + WIDTH / 2
+        y = (self.down + 0.5 - HEIGHT / 2 - uniform(-0.1, 0.1) * HEIGHT) / scale + HEIGHT / 2
+        x = torch.where(uniform(0, 1) < 0.5, WIDTH - x, x).floor().long()
+        y = y.floor().long()
+        inside = (x >= 0) & (x < WIDTH) & (y >= 0) & (y < HEIGHT)
+        which = torch.arange(BATCH, device=x.device)[:, None, None]
+        x, y = x.clamp(0, WIDTH - 1), y.clamp(0, HEIGHT - 1)
+        data = cells[which, :, y, x].permute(0, 3, 1, 2).float() / UNIT
+        data *= inside[:, None]
+        ids = torch.where(inside, truth[which, y, x].long(), DONT_CARE)
+        self.see_closer(data, scale, inside, narrower)
+        for number in (253, 254):
+            self.paste(data, ids, number, uniform)
+        data[:, 0] = data[:, 0] * uniform(0.8, 1.25) + uniform(-0.2, 0.2)
+        noise = torch.randn(BATCH, HEIGHT, WIDTH, generator=random, device=x.device)
+        data[:, 0] += noise * uniform(0, 0.06)
+        data[:, 1:3] *= uniform(0.7, 1.4)[:, None]
+        data[:, [3, 7]] *= uniform(0.85, 1.15)[:, None]
+        data[:, 5:7] *= uniform(0.8, 1.25)[:, None]
+        without = (uniform(0, 1) >= 0.1).float()
+        data[:, 5] *= without  # no floor
+        data[:, 7] *= without
+        data[:, 6] *= (uniform(0, 1) >= 0.1).float()  # no background
+        return data.contiguous(memory_format=torch.channels_last), self.targets(ids)
+
+    def see_closer(self, data, scale, inside, narrower):
+        """A crop as a camera with a narrower field of view would see it; recomputes the inputs that hint_input()
+        normalises by the image."""
+        import torch
+
+        def applied(to, new):
+            data[:, to] = torch.where(narrower & inside, new, data[:, to])
+
+        count = inside.sum((1, 2), keepdim=True).clamp(min=1)
+        mean = (data[:, 0] * inside).sum((1, 2), keepdim=True) / count
+        spread = (((data[:, 0] - mean) ** 2 * inside).sum((1, 2), keepdim=True) / count).sqrt()
+        applied(0, ((data[:, 0] - mean) / (spread + 0.1)).clamp(-4, 4))
+        matched = inside & (data[:, 4] > 0)
+        nearest = torch.where(matched, data[:, 3], torch.nan).flatten(1).nanquantile(0.98, 1)
+        nearest = nearest.nan_to_num(1.0).clamp(min=0.02)[:, None, None]
+        for channel in (3, 7):
+            applied(channel, (data[:, channel] / nearest).clamp(max=2))
+        for channel in (5, 6):
+            applied(channel, (data[:, channel] * scale).clamp(-1, 3))
+        applied(10, (2 * self.down / HEIGHT - 1).expand_as(data[:, 10]))
+
+    def paste(self, data, ids, number, uniform):
+        """Pastes an object of each sample's neighbour in front of what is there, half of the time onto another
+        object."""
+        import torch
+
+        def neighbour(values):
+            return torch.cat([half.roll(1, 0) for half in values.split(BATCH // 2)])
+
+        device = data.device
+        from_data, from_ids = neighbour(data), neighbour(ids)
+        counts = torch.zeros(BATCH, 256, device=device).scatter_add(
+            1, from_ids.flatten(1), torch.ones(BATCH, HEIGHT * WIDTH, device=device))
+        fits = (counts > 16) & (counts < 0.15 * HEIGHT * WIDTH)
+        fits[:, 0] = fits[:, DONT_CARE] = False
+        score, chosen = (fits * uniform(0.01, 1, (BATCH, 256))).max(1)
+        is_used = (score > 0)[:, None, None] & (uniform(0, 1) < PASTES)
+        mask = (from_ids == chosen[:, None, None]) & is_used
+        area = mask.sum((1, 2), keepdim=True).clamp(min=1)
+        centre_x = (mask * self.across).sum((1, 2), keepdim=True) / area
+        centre_y = (mask * self.down).sum((1, 2), keepdim=True) / area
+        onto_object = uniform(0, 1) < 0.7
+        wanted = torch.where(onto_object, (ids > 0) & (ids < DONT_CARE), ids < DONT_CARE)
+        place = (wanted * uniform(0.01, 1, (BATCH, HEIGHT, WIDTH))).flatten(1).argmax(1)[:, None, None]
+        reach = area.sqrt()
+        move_x = (place % WIDTH - centre_x + reach * uniform(-1, 1)).round().long()
+        move_y = (torch.div(place, WIDTH, rounding_mode="floor") - centre_y + reach * uniform(-0.5, 0.5)).round().long()
+        x, y = self.across.long() - move_x, self.down.long() - move_y
+        is_there = (x >= 0) & (x < WIDTH) & (y >= 0) & (y < HEIGHT)
+        x, y = x.clamp(0, WIDTH - 1), y.clamp(0, HEIGHT - 1)
+        which = torch.arange(BATCH, device=device)[:, None, None]
+        mask = mask[which, y, x] & is_there & (ids < DONT_CARE)
+        new = from_data[which, :, y, x].permute(0, 3, 1, 2).clone()
+        has = mask & (new[:, 4] > 0)
+        # Scaled to be in front of what it hides.
+        own = (new[:, 3] * has).sum((1, 2), keepdim=True) / has.sum((1, 2), keepdim=True).clamp(min=1)
+        behind = (data[:, 3] * mask).amax((1, 2), keepdim=True)
+        nearer = ((behind * uniform(1.02, 1.35) + 0.02) / own.clamp(min=0.02)).clamp(0.3, 3)
+        disparity = (new[:, 3] * nearer).clamp(0, 2)
+        # Quarters of a pixel per unit of channel 3, from the cells whose difference from the ground is not limited.
+        above = data[:, 3] - data[:, 7]
+        known = (data[:, 4] > 0) & (data[:, 7] > 0) & (data[:, 5].abs() < 0.95)
+        unit = (data[:, 5] * above * known).sum((1, 2), keepdim=True) / (above ** 2 * known).sum(
+            (1, 2), keepdim=True).clamp(min=1e-3)
+        new[:, 5] = torch.where((data[:, 7] > 0) & (new[:, 4] > 0), (unit * (disparity - data[:, 7])).clamp(-1, 3), 0.0)
+        background = unit * data[:, 3] - data[:, 6]
+        over = torch.where(data[:, 6] > 2.95, 3.0, (unit * disparity - background).clamp(-1, 3))
+        new[:, 6] = torch.where((data[:, 4] > 0) & (new[:, 4] > 0) & (unit > 0), over, new[:, 6])
+        new[:, 3] = disparity
+        for kept in (7, 10, 11):
+            new[:, kept] = data[:, kept]
+        data.copy_(torch.where(mask[:, None], new, data))
+        ids.copy_(torch.where(mask, number, ids))
+
+    def targets(self, ids):
+        """Per cell: object, outline, centre (2), log₂ of the size, root of the size, known."""
+        import torch
+
+        known = ids < DONT_CARE
+        is_object = known & (ids > 0)
+        out = torch.zeros(BATCH, 7, HEIGHT, WIDTH, device=ids.device)
+        out[:, 0], out[:, 6] = is_object, known
+        outline = torch.zeros_like(known)
+        for down, across in ((0, 1), (1, 0)):
+            here, there = ids[:, :HEIGHT - down, :WIDTH - across], ids[:, down:, across:]
+            parts = (here != there) & (here < DONT_CARE) & (there < DONT_CARE)
+            outline[:, :HEIGHT - down, :WIDTH - across] |= parts
+            outline[:, down:, across:] |= parts
+        out[:, 1] = outline
+        flat = torch.where(known, ids, 0).flatten(1)
+
+        def sums(values):
+            return torch.zeros(BATCH, 256, device=ids.device).scatter_add(1, flat, values.flatten(1))
+
+        grid = torch.zeros(BATCH, HEIGHT, WIDTH, device=ids.device)
+        size = sums(grid + 1)
+        least = size.clamp(min=1)
+        table = torch.stack([sums(grid + self.across) / least, sums(grid + self.down) / least, least.log2(), size.sqrt()])
+        table[:, :, 0] = 0
+        for k in range(4):
+            out[:, 2 + k] = table[k].gather(1, flat).view(BATCH, HEIGHT, WIDTH)
+        return out
 
 
-def network():
+# ---- network
+
+def network(width):
     from torch import nn
     import torch
 
@@ -135,16 +265,18 @@ def network():
         return nn.Sequential(nn.Conv2d(inputs, outputs, side, stride, side // 2, bias=False), nn.BatchNorm2d(outputs),
                              nn.ReLU())
 
+    first, second, third, last = (int(8 * round(width * n / 8)) for n in (FIRST, SECOND, THIRD, LAST))
+
     class Network(nn.Module):
         def __init__(self):
             super().__init__()
             self.steps = nn.ModuleList([
-                layer(CHANNELS, FIRST, 2), layer(FIRST, FIRST), layer(FIRST, SECOND, 2), layer(SECOND, SECOND),
-                layer(SECOND, THIRD, 2), layer(THIRD, THIRD), layer(THIRD, THIRD),
-                layer(THIRD, THIRD, 2), layer(THIRD, THIRD), layer(THIRD, THIRD),
-                layer(THIRD, THIRD, 1, 1), layer(THIRD, THIRD), layer(THIRD, SECOND, 1, 1), layer(SECOND, SECOND),
-                layer(SECOND, FIRST, 1, 1), layer(FIRST, LAST)])
-            self.end = nn.Conv2d(LAST, 4 * len(STEPS_PER_UNIT), 1)
+                layer(CHANNELS, first, 2), layer(first, first), layer(first, second, 2), layer(second, second),
+                layer(second, third, 2), layer(third, third), layer(third, third),
+                layer(third, third, 2), layer(third, third), layer(third, third),
+                layer(third, third, 1, 1), layer(third, third), layer(third, second, 1, 1), layer(second, second),
+                layer(second, first, 1, 1), layer(first, last)])
+            self.end = nn.Conv2d(last, 4 * len(STEPS_PER_UNIT), 1)
             with torch.no_grad():
                 self.end.bias.copy_(torch.tensor([-2.0, -2.5, 0, 0, 8]).repeat_interleave(4))
 
@@ -172,7 +304,8 @@ def network():
     return Network()
 
 
-def loss_of(output, truth):
+def loss_of(output, truth, down, across):
+    """The four parts of the loss: object, outline, centre, size."""
     import torch
     from torch.nn import functional as F
 
@@ -182,49 +315,59 @@ def loss_of(output, truth):
     known, objects, root = truth[:, 6], truth[:, 0], truth[:, 5] + 1
     # Each object is weighted by the root of its size.
     weight = objects / root
-    x = (torch.from_numpy(ACROSS) + 16 * output[:, 2] - truth[:, 2]) / root
-    y = (torch.from_numpy(DOWN) + 16 * output[:, 3] - truth[:, 3]) / root
+    x = (across + 16 * output[:, 2] - truth[:, 2]) / root
+    y = (down + 16 * output[:, 3] - truth[:, 3]) / root
     middle = F.smooth_l1_loss(x, 0 * x, reduction="none", beta=0.1) + F.smooth_l1_loss(y, 0 * y, reduction="none", beta=0.1)
     size = F.smooth_l1_loss(output[:, 4], truth[:, 4], reduction="none", beta=0.3)
-    parts = [shared(output[:, 0], objects, known),
-             shared(output[:, 1], truth[:, 1], known, pos_weight=torch.tensor(2.0)),
-             (middle * weight).sum() / (weight.sum() + 1), 0.3 * (size * weight).sum() / (weight.sum() + 1)]
-    return sum(parts), np.array([float(part) for part in parts])
+    return torch.stack([shared(output[:, 0], objects, known),
+                        shared(output[:, 1], truth[:, 1], known, pos_weight=torch.tensor(2.0, device=output.device)),
+                        (middle * weight).sum() / (weight.sum() + 1), 0.3 * (size * weight).sum() / (weight.sum() + 1)])
 
 
-def fitted(frames, often, steps):
-    """A network fitted to the frames, each used `often` times; its weights are an exponential average over the last
-    steps."""
+def fitted(frames, steps, width, checkpoint):
+    """A network fitted to the frames; its weights are an exponential average over the last steps."""
     import torch
 
     torch.manual_seed(SEED)
-    torch.set_num_threads(1)
-    net, mean = network().to(memory_format=torch.channels_last), network()
+    torch.set_num_threads(2)  # sums depend on it
+    device = frames.device
+    net, mean = (network(width).to(device, memory_format=torch.channels_last) for _ in range(2))
     mean.load_state_dict(net.state_dict())
-    samples = Samples(frames)
-    order = np.repeat(np.arange(len(frames)), often)
+    sampler = Sampler(frames)
     optimizer = torch.optim.AdamW(net.parameters(), RATE, weight_decay=DECAY)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, RATE, total_steps=steps, pct_start=0.15)
-    random, queue, losses = np.random.RandomState(SEED), [], np.zeros(4)
-    begin = time.time()
-    for step in range(1, steps + 1):
-        if len(queue) < BATCH:
-            queue = list(random.permutation(order))
-        drawn = [samples.sample(queue.pop()) for _ in range(BATCH)]
-        data = torch.from_numpy(np.stack([d for d, _ in drawn])).contiguous(memory_format=torch.channels_last)
-        loss, parts = loss_of(net(data), torch.from_numpy(np.stack([t for _, t in drawn])))
+    parts = {"net": net, "mean": mean, "optimizer": optimizer, "schedule": schedule}
+    first = 0
+    if checkpoint.exists():
+        state = torch.load(checkpoint, map_location=device)
+        if (state["steps"], state["width"], state["frames"]) == (steps, width, len(frames)):
+            first = state["step"]
+            for name, part in parts.items():
+                part.load_state_dict(state[name])
+            print(f"goes on after step {first}", flush=True)
+    begin = saved = time.time()
+    losses = torch.zeros(4, device=device)
+    for step in range(first, steps):
+        data, truth = sampler.batch(step)
+        loss = loss_of(net(data), truth, sampler.down, sampler.across)
         optimizer.zero_grad()
-        loss.backward()
+        loss.sum().backward()
         torch.nn.utils.clip_grad_norm_(net.parameters(), 5.0)
         optimizer.step()
         schedule.step()
-        losses += (parts - losses) * 0.02 if step > 1 else parts
+        losses += (loss.detach() - losses) * (0.02 if step > first else 1)
         with torch.no_grad():
             for kept, new in zip(mean.state_dict().values(), net.state_dict().values()):
                 kept.copy_(new) if not kept.dtype.is_floating_point else kept.lerp_(new, 0.01)
-        if step % 100 == 0:
-            print(f"{time.time() - begin:6.0f} s  step {step}: {' '.join(f'{v:.3f}' for v in losses)}", flush=True)
-    return mean.eval()
+        if (step + 1) % 100 == 0:
+            print(f"{time.time() - begin:6.0f} s  step {step + 1}: {' '.join(f'{v:.3f}' for v in losses.tolist())}", flush=True)
+        if time.time() - saved > CHECKPOINT_SECONDS:
+            saved = time.time()
+            unfinished = checkpoint.with_suffix(".unfinished")
+            torch.save({name: part.state_dict() for name, part in parts.items()}
+                       | {"step": step + 1, "steps": steps, "width": width, "frames": len(frames)}, unfinished)
+            unfinished.replace(checkpoint)
+    return mean.cpu().eval()
 
 
 def rounded(net, frames):
@@ -233,8 +376,8 @@ def rounded(net, frames):
 
     seen = [0.0] * len(net.steps)
     with torch.no_grad():
-        for cells, _, _ in frames:
-            net(torch.from_numpy(cells[None].astype(np.float32) / UNIT), seen)
+        for number in np.linspace(0, 2 * len(frames) - 1, CALIBRATION).astype(int):
+            net(frames.take(np.array([number]))[0].cpu().float() / UNIT, seen)
     # Summands need a common scale: the decoder's 1×1 layers use that of the encoder's.
     for small, like in ((10, 6), (12, 3), (14, 1)):
         seen[small] = seen[like] = max(seen[small], seen[like])
@@ -284,45 +427,40 @@ def write_fitted(layers, path):
     fitted_files.write_network(path, [shape for shape, _, _, _ in layers], all_of(1), all_of(2), all_of(3))
 
 
-def fit_one(arguments, jobs, half):
-    """Runs in its own process: fits without one half of the scenes, or on all."""
-    frames = load(arguments.work / "inputs", jobs)
-    takes = [i for i, job in enumerate(jobs) if half == "all" or fold_of(job[0], HALVES) != int(half)]
-    often = [int(WEIGHTS.get(jobs[i][2], 1)) for i in takes]
-    net = fitted([frames[i] for i in takes], often, arguments.steps)
+def fit(arguments):
     import torch
-    torch.save(net.state_dict(), arguments.work / f"network_{half}.pt")
-    layers = rounded(net, [frames[i] for i in takes[::5]])
-    write(layers, arguments.work / f"hints_{half}")
-    if half == "all" and arguments.out:
+
+    device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    frames = Frames(arguments.stores, arguments.worlds, device)
+    print(f"{len(frames)} frames, {arguments.steps} steps, on {device}", flush=True)
+    arguments.work.mkdir(parents=True, exist_ok=True)
+    net = fitted(frames, arguments.steps, arguments.width, arguments.work / f"{arguments.name}.checkpoint")
+    torch.save(net.state_dict(), arguments.work / f"{arguments.name}.pt")
+    layers = rounded(net, frames)
+    write(layers, arguments.work / arguments.name)
+    if arguments.out:
         write_fitted(layers, arguments.out / "hints.bin")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("tool", type=pathlib.Path)
-    parser.add_argument("data", type=pathlib.Path)
-    parser.add_argument("--rooms", type=pathlib.Path, help="more rooms, rendered by tools/render")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
-    parser.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
-    parser.add_argument("--steps", type=int, default=4800)
-    parser.add_argument("--only", help="one half, or all: results in the work folder are reused")
+    commands = parser.add_subparsers(dest="command", required=True)
+    command = commands.add_parser("gather")
+    command.add_argument("tool", type=pathlib.Path)
+    command.add_argument("store", type=pathlib.Path)
+    command.add_argument("folders", type=pathlib.Path, nargs="+", help="folders of frames")
+    command = commands.add_parser("fit")
+    command.add_argument("stores", type=pathlib.Path, nargs="+")
+    command.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
+    command.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
+    command.add_argument("--steps", type=int, default=12000)
+    command.add_argument("--width", type=float, default=1.0, help="of all layers")
+    command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
+    command.add_argument("--name", default="hints", help="of the file in the work folder")
     arguments = parser.parse_args()
-    arguments.work.mkdir(parents=True, exist_ok=True)
-    jobs = jobs_of(fit_sets(arguments.data, arguments.rooms))
-    if arguments.only:
-        return fit_one(arguments, jobs, arguments.only)
-    run_tool(arguments.tool, arguments.work, jobs, lambda i: "- - -", "--inputs", arguments.work / "inputs@")
-    waiting = ["all", *map(str, range(HALVES))]
-    running = []
-    while waiting or running:
-        while waiting and len(running) < 2:
-            running.append(subprocess.Popen([sys.executable, *sys.argv, "--only", waiting.pop(0)]))
-        if running[0].wait():
-            for other in running[1:]:
-                other.terminate()
-            sys.exit("fit_hints.py: a network could not be fitted")
-        running.pop(0)
+    if arguments.command == "fit":
+        return fit(arguments)
+    gather(arguments.tool, arguments.store, [f for folder in arguments.folders for f in frames_in(folder)])
 
 
 if __name__ == "__main__":

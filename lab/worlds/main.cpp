@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
-// worlds frames FIRST LAST -o DIR: writes frames of worlds; worlds sheet FIRST LAST -o FILE.png: a contact sheet.
+// worlds frames FIRST LAST -o DIR: writes frames of worlds; worlds sheet FIRST LAST -o FILE.png: a contact sheet;
+// worlds yardstick -o DIR: the frames that choices are measured by (docs/worlds.md).
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cairn/core/error.hpp>
@@ -24,7 +25,7 @@ struct Arguments {
   WorldOptions world;
   int first = 0;
   int last = 0;
-  int samples = 9;
+  int samples = 4;
   int threads = 0;
   std::string size = "320x240";
   std::string use = "fit";
@@ -66,6 +67,20 @@ void write_frames(const Arguments& arguments) {
   });
 }
 
+/// Never changes: its scores are compared over the years.
+void write_yardstick(Arguments arguments) {
+  arguments.world = {.seed = 4100, .use = Use::yardstick, .size = {320, 240}, .outdoor_share = 0};
+  const fs::path folder = arguments.out;
+  arguments.out = folder / "indoors";
+  arguments.last = 149;
+  write_frames(arguments);
+  arguments.world.seed = 4200;
+  arguments.world.outdoor_share = 1;
+  arguments.out = folder / "outdoors";
+  arguments.last = 79;
+  write_frames(arguments);
+}
+
 void draw_sheet(const Arguments& arguments) {
   constexpr int kColumns = 6, kGap = 4;
   constexpr std::array kColours{Rgb{80, 120, 230}, Rgb{230, 110, 70}, Rgb{70, 190, 90},  Rgb{220, 190, 60},
@@ -97,13 +112,20 @@ int run(int argc, char** argv) {
   Arguments arguments;
   const auto declare = [&](const char* name, const char* help) {
     CLI::App* const command = app.add_subcommand(name, help);
+    command->add_option("-o", arguments.out, "folder of frames, or PNG file of the sheet")->required();
+    command->add_option("--threads", arguments.threads, "0: one per processor")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    return command;
+  };
+  const auto declare_drawn = [&](const char* name, const char* help) {
+    CLI::App* const command = declare(name, help);
     command->add_option("FIRST", arguments.first, "number of the first world")
         ->required()
         ->check(CLI::NonNegativeNumber);
     command->add_option("LAST", arguments.last, "number of the last one")
         ->required()
         ->check(CLI::NonNegativeNumber);
-    command->add_option("-o", arguments.out, "folder of frames, or PNG file of the sheet")->required();
     command->add_option("--seed", arguments.world.seed, "another seed draws other worlds")
         ->capture_default_str();
     command->add_option("--use", arguments.use, "families and models: fit or yardstick")
@@ -115,20 +137,23 @@ int run(int argc, char** argv) {
     command->add_option("--samples", arguments.samples, "rays per pixel, a square number")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
-    command->add_option("--threads", arguments.threads, "0: one per processor")
-        ->check(CLI::Range(0, 1024))
-        ->capture_default_str();
     return command;
   };
   CLI::App* const frames =
-      declare("frames", "writes one folder per world; folders that exist are left as they are");
-  declare("sheet", "draws left images and ids");
+      declare_drawn("frames", "writes one folder per world; folders that exist are left as they are");
+  CLI::App* const yardstick = declare("yardstick", "writes the frames that choices are measured by");
+  declare_drawn("sheet", "draws left images and ids");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     std::cerr << "worlds: " << error.what() << "\n";
     return 2;
+  }
+  if (yardstick->parsed()) {
+    if (models_for(Use::yardstick).empty()) throw Error("the yardstick needs sweethome3d-furniture");
+    write_yardstick(arguments);
+    return 0;
   }
   Size& size = arguments.world.size;
   if (std::sscanf(arguments.size.c_str(), "%dx%d", &size.width, &size.height) != 2 ||

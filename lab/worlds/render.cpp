@@ -22,6 +22,9 @@ constexpr float kSmooth = 0.77F;  // cosine: at sharper creases, normals are not
 constexpr float kBlocked =
     0.35F;  // of the ambient light, where something near is in its way: it reflects some
 constexpr float kMinReflection = 0.02F;
+constexpr int kWindow = 2;  // px, around a pixel, over which soft light is smoothed
+constexpr float kSameNormal = 0.95F;
+constexpr float kSamePlane = 0.2F;  // of the distance between two points of one surface
 
 Vec3 times(Vec3 a, Vec3 b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
@@ -161,31 +164,52 @@ struct Draws {
   }
 };
 
+/// What a ray brings back. `soft` is the light of lamps and surroundings on a point; few rays make it noisy.
+struct Seen {
+  const Body* body = nullptr;  // nullptr: nothing to smooth
+  Vec3 point;
+  Vec3 normal;
+  Vec3 soft;    // seen times `albedo`
+  Vec3 albedo;
+  Vec3 rest;    // the sun's light, mirrored light, what shines
+};
+
 /// Light along rays.
 class Light {
  public:
   Light(const Scene& scene, const Tracer& tracer) : scene_(scene), tracer_(tracer) {}
 
-  [[nodiscard]] Vec3 along(Vec3 from, Vec3 direction, Draws& draws, bool reflects = true) const {
+  [[nodiscard]] Seen along(Vec3 from, Vec3 direction, Draws& draws, bool reflects = true) const {
     const Hit hit = tracer_.hit(from, direction);
-    if (hit.body == nullptr)
-      return mix(scene_.sky_low, scene_.sky_high, std::clamp(2 * direction.z, 0.0F, 1.0F));
+    Seen seen;
+    if (hit.body == nullptr) {
+      seen.rest = mix(scene_.sky_low, scene_.sky_high, std::clamp(2 * direction.z, 0.0F, 1.0F));
+      return seen;
+    }
     const Surface surface = surface_of(hit);
-    if (hit.body->is_bright) return 3 * surface.albedo;
+    if (hit.body->is_bright) {
+      seen.rest = 3 * surface.albedo;
+      return seen;
+    }
     const Vec3 at = hit.point + kOffset * hit.geometric;
-    Vec3 light = times(surface.albedo, falling_on(at, hit.normal, draws));
-    if (!reflects || surface.gloss <= 0) return light;
+    seen.body = hit.body, seen.point = hit.point, seen.normal = hit.normal, seen.albedo = surface.albedo;
+    const auto [soft, hard] = falling_on(at, hit.normal, draws);
+    seen.soft = soft, seen.rest = times(surface.albedo, hard);
+    if (!reflects || surface.gloss <= 0) return seen;
     // Schlick's approximation; a rough surface mirrors less clearly.
     const float grazing = 1 + dot(direction, hit.normal);
     const float share =
         surface.gloss + (1 - surface.gloss) * std::pow(std::max(grazing, 0.0F), 5.0F) * surface.gloss * 4;
     const float mirrored = std::min(share, 0.95F) * (1 - surface.roughness);
-    if (mirrored < kMinReflection) return light;
+    if (mirrored < kMinReflection) return seen;
     const Vec3 mirror = direction - 2 * dot(direction, hit.normal) * hit.normal;
     const float spread = surface.roughness * surface.roughness;
     const float first = draw(draws.dice, 0, 1);
     const Vec3 scattered = unit(mirror + spread * around(hit.normal, first, draw(draws.dice, 0, 1)));
-    return (1 - mirrored) * light + mirrored * along(at, scattered, draws, false);
+    const Seen behind = along(at, scattered, draws, false);
+    seen.albedo = (1 - mirrored) * seen.albedo;
+    seen.rest = (1 - mirrored) * seen.rest + mirrored * (times(behind.albedo, behind.soft) + behind.rest);
+    return seen;
   }
 
  private:
@@ -201,30 +225,32 @@ class Light {
     return surface_at(body.looks.at(body.mesh.part[hit.triangle] & 3U), at, point);
   }
 
-  /// What falls on a point: lamps with soft shadows, and ambient light where nothing near blocks it.
-  [[nodiscard]] Vec3 falling_on(Vec3 at, Vec3 normal, const Draws& draws) const {
-    Vec3 sum;
+  /// What falls on a point: lamps with soft shadows and ambient light where nothing near blocks it; the sun.
+  [[nodiscard]] std::array<Vec3, 2> falling_on(Vec3 at, Vec3 normal, const Draws& draws) const {
+    Vec3 soft, hard;
     int which = 0;
     for (const Lamp& lamp : scene_.lamps) {
       const Vec2 drawn = draws.even(++which);
       const float across = drawn.x - 0.5F, along = drawn.y - 0.5F;
+      const bool is_sun = lamp.size_m <= 0;
       Vec3 towards = lamp.at + Vec3{lamp.size_m * across, lamp.size_m * along, 0} - at;
       float fading = 1;
       float reach = kFar;
-      if (lamp.size_m > 0) {
+      if (is_sun) {
+        towards = lamp.at + Vec3{0.004F * across, 0.004F * along, 0};  // its disc
+      } else {
         reach = length(towards);
         fading = std::max(unit(towards).z, 0.05F) / (reach * reach);
-      } else {
-        towards = lamp.at + Vec3{0.004F * across, 0.004F * along, 0};  // the sun's disc
       }
       const Vec3 direction = unit(towards);
       const float facing = dot(normal, direction);
       if (facing <= 0 || !tracer_.is_free(at, direction, reach - kOffset)) continue;
+      Vec3& sum = is_sun ? hard : soft;
       sum = sum + facing * fading * lamp.power;
     }
     const Vec2 drawn = draws.even(0);
     const bool is_free = tracer_.is_free(at, around(normal, drawn.x, drawn.y), scene_.reach_m);
-    return sum + (is_free ? 1.0F : kBlocked) * scene_.ambient;
+    return {soft + (is_free ? 1.0F : kBlocked) * scene_.ambient, hard};
   }
 
   const Scene& scene_;
@@ -235,6 +261,28 @@ Vec3 direction_of(const Rig& rig, float x, float y) {
   return rig.forward + (x - rig.cx_px) / rig.focal_px * rig.right + (y - rig.cy_px) / rig.focal_px * rig.down;
 }
 
+/// The soft light at a sample: the mean over the samples of the same number on the same surface, in a window
+/// around its pixel. `seen`: pixel by pixel.
+Vec3 smoothed(const std::vector<Seen>& seen, Size size, int x, int y, std::size_t which, std::size_t per_pixel) {
+  const auto at = [&](int column, int row) -> const Seen& {
+    return seen[static_cast<std::size_t>(row * size.width + column) * per_pixel + which];
+  };
+  const Seen& here = at(x, y);
+  Vec3 sum;
+  float count = 0;
+  for (int row = std::max(y - kWindow, 0); row <= std::min(y + kWindow, size.height - 1); ++row) {
+    for (int column = std::max(x - kWindow, 0); column <= std::min(x + kWindow, size.width - 1); ++column) {
+      const Seen& there = at(column, row);
+      if (there.body != here.body || dot(there.normal, here.normal) < kSameNormal) continue;
+      const Vec3 apart = there.point - here.point;
+      if (std::abs(dot(apart, here.normal)) > kSamePlane * length(apart)) continue;
+      sum = sum + there.soft;
+      ++count;
+    }
+  }
+  return 1 / count * sum;
+}
+
 Picture picture_of(const Scene& scene, const Tracer& tracer, bool is_right, int samples) {
   const Rig& rig = scene.rig;
   const Light light(scene, tracer);
@@ -242,24 +290,37 @@ Picture picture_of(const Scene& scene, const Tracer& tracer, bool is_right, int 
   const float rows = is_right ? rig.right_row_offset_px : 0;
   Picture picture{rig.size, std::vector<Vec3>(static_cast<std::size_t>(rig.size.area()))};
   const int strata = std::max(1, static_cast<int>(std::lround(std::sqrt(samples))));
-  std::size_t at = 0;
+  const auto per_pixel = static_cast<std::size_t>(strata * strata);
+  std::vector<Seen> seen;
+  seen.reserve(per_pixel * picture.colour.size());
+  std::uint64_t at = 0;
   for (int y = 0; y < rig.size.height; ++y) {
     for (int x = 0; x < rig.size.width; ++x, ++at) {
       Dice dice = Dice(scene.seed).fork(2 * at + (is_right ? 1 : 0));
       Draws draws{dice, {draw(dice, 0, 1), draw(dice, 0, 1)}};
       draws.dice = dice.fork(1);
-      Vec3 sum;
       for (int k = 0; k < strata * strata; ++k) {
         draws.sample = k;
         const float dx = fraction(k % strata, strata) + draw(dice, 0, 1.0 / strata) - 0.5F;
         const float dy = fraction(k / strata, strata) + draw(dice, 0, 1.0 / strata) - 0.5F;
         const Vec3 direction =
             unit(direction_of(rig, static_cast<float>(x) + dx, static_cast<float>(y) + dy - rows));
-        const Vec3 seen = light.along(eye, direction, draws);
-        // A lamp in a mirror must not outshine its neighbours by itself.
-        sum = sum + Vec3{std::min(seen.x, 8.0F), std::min(seen.y, 8.0F), std::min(seen.z, 8.0F)};
+        seen.push_back(light.along(eye, direction, draws));
       }
-      picture.colour[at] = (1.0F / static_cast<float>(strata * strata)) * sum;
+    }
+  }
+  at = 0;
+  for (int y = 0; y < rig.size.height; ++y) {
+    for (int x = 0; x < rig.size.width; ++x, ++at) {
+      Vec3 sum;
+      for (std::size_t k = 0; k < per_pixel; ++k) {
+        const Seen& one = seen[at * per_pixel + k];
+        Vec3 c = one.rest;
+        if (one.body != nullptr) c = c + times(one.albedo, smoothed(seen, rig.size, x, y, k, per_pixel));
+        // A lamp in a mirror must not outshine its neighbours by itself.
+        sum = sum + Vec3{std::min(c.x, 8.0F), std::min(c.y, 8.0F), std::min(c.z, 8.0F)};
+      }
+      picture.colour[at] = (1.0F / static_cast<float>(per_pixel)) * sum;
     }
   }
   return picture;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "lab/worlds/families_parts.hpp"
 #include "lab/worlds/models.hpp"
 #include "lab/worlds/shapes.hpp"
 
@@ -16,8 +17,10 @@ namespace {
 
 constexpr int kTries = 24;        // places tried for a thing
 constexpr float kLevel = 0.015F;  // m, by which the ground below a thing may differ
-constexpr float kSmall = 0.07F;   // half of a side, of the image's width; smaller things are rare
+constexpr float kSmall = 0.09F;   // half of a side, of the image's width; smaller things are rare
+constexpr float kLargest = 0.45F; // of the image, for a thing's bounding box
 constexpr double kModels = 0.35;  // share of models among the things indoors
+constexpr double kSupports = 0.6;  // how often something to stand on is placed where nothing can be stood on
 
 // ---- what stands where ----
 
@@ -267,10 +270,27 @@ class Builder {
     const float of_metre = world_.scene.rig.focal_px / middle.depth / 2;
     const float half = of_metre * sides[2];
     if (half > 0.5F * w) return false;
-    const float least = how == "on" || how == "shelf" ? 0.5F * kSmall : kSmall;
+    const float least = how == "on" || how == "shelf" ? 0.75F * kSmall : kSmall;
     if (of_metre * std::sqrt(sides[1] * sides[2]) < least * w && !dice_.chance(0.06)) return false;
     const float margin = how == "edge" ? -0.8F * half : 0.1F * half;
     return middle.x > margin && middle.x < w - margin && middle.y > margin && middle.y < h - margin;
+  }
+
+  /// Share of the image that the bounding box covers.
+  [[nodiscard]] float share_of_image(const Footprint& footprint, float bottom, float top) const {
+    const Size size = world_.scene.rig.size;
+    const float w = static_cast<float>(size.width), h = static_cast<float>(size.height);
+    Vec2 low{w, h}, high{0, 0};
+    for (const Vec2 c : footprint.corners()) {
+      for (const float z : {bottom, top}) {
+        const Pixel pixel = pixel_of({c.x, c.y, z});
+        if (pixel.depth < 0.05F) return 1;
+        low = {std::min(low.x, pixel.x), std::min(low.y, pixel.y)};
+        high = {std::max(high.x, pixel.x), std::max(high.y, pixel.y)};
+      }
+    }
+    return std::max(std::min(high.x, w) - std::max(low.x, 0.0F), 0.0F) *
+           std::max(std::min(high.y, h) - std::max(low.y, 0.0F), 0.0F) / (w * h);
   }
 
   static bool is_inside(const Footprint& a, const Footprint& b) {
@@ -292,6 +312,7 @@ class Builder {
     const float radius = std::hypot(footprint.half.x, footprint.half.y);
     if (std::hypot(apart.x, apart.y) < radius + nearest_ && eye.z < top + nearest_) return false;
     if (!is_of_good_size(made.mesh, at, bottom, how)) return false;
+    if (share_of_image(footprint, bottom, top) > kLargest) return false;
     if (table_ && bottom == 0 && !is_inside(footprint, *table_)) return false;
     if (world_.things.size() >= 250) return false;
     const int id = static_cast<int>(world_.things.size()) + 1;
@@ -338,6 +359,48 @@ class Builder {
     return false;
   }
 
+  struct Amount {
+    int count = 0;
+    float least_m = 0;  // longest side; 0: as drawn
+    float most_m = 0;
+    float far = 6;
+    double at_wall = 0.12;
+    double on = 0.25;
+    double touching = 0.15;
+    double at_edge = 0.12;
+  };
+
+  /// Something with a level top, for others to stand on: a block, a drum, a slab on legs.
+  bool add_support(float bottom, const Amount& amount) {
+    const bool is_small = amount.most_m > 0;
+    const float scale = is_small ? 0.35F : 1;
+    const Vec3 size{scale * draw(dice_, 0.3, 0.9), scale * draw(dice_, 0.3, 0.9), scale * draw(dice_, 0.15, 0.8)};
+    Made made;
+    switch (dice_.below(3)) {
+      case 0:
+        made.mesh = box(size, draw(dice_, 0, 0.04) * size.z);
+        break;
+      case 1:
+        made.mesh = cylinder(size.x / 2, size.z, dice_.between(6, 40));
+        break;
+      default: {
+        const float thick = draw(dice_, 0.02, 0.1) * size.z;
+        made.mesh = moved(box({size.x, size.y, thick}), {0, 0, size.z - thick});
+        Dice own = dice_.fork(0x1E65 + world_.things.size());
+        add_legs(made.mesh, own, corners(0.45F * size.x, 0.45F * size.y, size.z - thick), 1);
+        settle(made.mesh);
+      }
+    }
+    made.kind = "support";
+    paint(made);
+    for (int t = 0; t < 2 * kTries; ++t) {
+      if (t < kTries && dice_.chance(amount.at_wall) && put_at_wall(made, bottom, amount.far)) return true;
+      const auto at = spot(bottom, amount.far, false);
+      if (at && put(made, *at, draw(dice_, 0, 2 * kPi), bottom, 0.02F, "free")) return true;
+    }
+    return false;
+  }
+
   /// A point of the image where a thing may stand, on the plane z = height.
   std::optional<Vec2> spot(float height, float far, bool at_edge) {
     const Size size = world_.scene.rig.size;
@@ -352,34 +415,25 @@ class Builder {
   /// Against the nearest upright background: `walls_`.
   bool put_at_wall(Made& made, float bottom, float far) {
     if (walls_.empty()) return false;
-    const auto& [from, to, inward] = dice_.pick(walls_);
     const auto [low, high] = bounds(made.mesh);
-    const float t = draw(dice_, 0.03, 0.97),
-                deep = (high.y - low.y) / 2 + (dice_.chance(0.7) ? 0.004F : draw(dice_, 0.01, 0.1));
-    const Vec2 at{from.x + t * (to.x - from.x) + deep * inward.x,
-                  from.y + t * (to.y - from.y) + deep * inward.y};
-    const Pixel pixel = pixel_of({at.x, at.y, bottom + high.z / 2});
+    const float deep = (high.y - low.y) / 2 + (dice_.chance(0.7) ? 0.004F : draw(dice_, 0.01, 0.1));
+    const float off = dice_.chance(0.8) ? 0 : draw(dice_, -0.06, 0.06);
     const Size size = world_.scene.rig.size;
-    if (pixel.depth < nearest_ || pixel.depth > far || pixel.x < 0 ||
-        pixel.x > static_cast<float>(size.width) || pixel.y < 0 ||
-        pixel.y > static_cast<float>(size.height)) {
-      return false;
+    for (int k = 0; k < kTries; ++k) {  // most of the walls are out of view
+      const auto& [from, to, inward] = dice_.pick(walls_);
+      const float t = draw(dice_, 0.03, 0.97);
+      const Vec2 at{from.x + t * (to.x - from.x) + deep * inward.x,
+                    from.y + t * (to.y - from.y) + deep * inward.y};
+      const Pixel pixel = pixel_of({at.x, at.y, bottom + high.z / 2});
+      if (pixel.depth < nearest_ || pixel.depth > far || pixel.x < 0 ||
+          pixel.x > static_cast<float>(size.width) || pixel.y < 0 ||
+          pixel.y > static_cast<float>(size.height)) {
+        continue;
+      }
+      return put(made, at, std::atan2(to.y - from.y, to.x - from.x) + off, bottom, 0.005F, "wall");
     }
-    const float yaw =
-        std::atan2(to.y - from.y, to.x - from.x) + (dice_.chance(0.8) ? 0 : draw(dice_, -0.06, 0.06));
-    return put(made, at, yaw, bottom, 0.005F, "wall");
+    return false;
   }
-
-  struct Amount {
-    int count = 0;
-    float least_m = 0;  // longest side; 0: as drawn
-    float most_m = 0;
-    float far = 6;
-    double at_wall = 0.15;
-    double on = 0.25;
-    double touching = 0.15;
-    double at_edge = 0.12;
-  };
 
   /// Next to another thing, moved towards it until it touches.
   bool put_touching(Made& made, float bottom) {
@@ -409,7 +463,10 @@ class Builder {
       const float size =
           amount.most_m > 0 ? static_cast<float>(dice_.log_uniform(amount.least_m, amount.most_m)) : 0;
       const double way = dice_.unit();
-      if (!standing_.empty() && way < amount.on && add_on_top()) continue;
+      if (way < amount.on) {
+        if (!standing_.empty() && add_on_top()) continue;
+        if (dice_.chance(kSupports) && add_support(bottom, amount)) continue;
+      }
       const bool at_wall = way < amount.on + amount.at_wall;
       const bool touches =
           !at_wall && !standing_.empty() && way < amount.on + amount.at_wall + amount.touching;
@@ -515,7 +572,7 @@ class Builder {
     nearest_ = 0.35F;
     if (world_.place == Place::shelf) shelves(depth, width);
     Amount amount;
-    amount.count = dice_.chance(0.04) ? 0 : dice_.between(2, 10);
+    amount.count = dice_.chance(0.04) ? 0 : dice_.between(2, 8);
     amount.far = depth + 1;
     if (is_clutter) amount = {dice_.between(8, 14), 0.1F, 0.6F, 3, 0.05, 0.3, 0.5, 0.15};
     if (world_.place == Place::shelf) amount.count = dice_.between(0, 3);
@@ -529,7 +586,7 @@ class Builder {
     const float w = std::min(width * 0.9F, draw(dice_, 0.8, 2.2)), deep = draw(dice_, 0.22, 0.45);
     const float gap = draw(dice_, 0.28, 0.5), low = draw(dice_, 0.1, 0.5), thick = draw(dice_, 0.015, 0.04);
     Rig& rig = world_.scene.rig;
-    const float away = draw(dice_, 0.9, 1.8), middle = draw(dice_, -0.2, 0.2) * width;
+    const float away = draw(dice_, 0.7, 1.3), middle = draw(dice_, -0.2, 0.2) * width;
     const float eye = low + draw(dice_, 0.3, 0.9) * static_cast<float>(boards) * gap;
     camera({depth - deep - away, middle + draw(dice_, -0.2, 0.2), eye}, draw(dice_, -0.2, 0.2),
            draw(dice_, -5, 18), rig.focal_px / static_cast<float>(rig.size.width), rig.baseline_m);
@@ -751,10 +808,10 @@ class Builder {
 
   void sensor() {
     Sensor& sensor = world_.sensor;
-    sensor.blur_px = draw(dice_, 0.3, 0.9);
+    sensor.blur_px = draw(dice_, 0.3, 0.75);
     sensor.vignetting = dice_.chance(0.5) ? draw(dice_, 0, 0.35) : 0;
-    sensor.shot_noise = static_cast<float>(dice_.log_uniform(0.003, 0.016));
-    sensor.read_noise = static_cast<float>(dice_.log_uniform(0.0004, 0.004));
+    sensor.shot_noise = static_cast<float>(dice_.log_uniform(0.0015, 0.008));
+    sensor.read_noise = static_cast<float>(dice_.log_uniform(0.0004, 0.0025));
     sensor.gamma = draw(dice_, 1.8, 2.4);
     sensor.right_gain = 1 + (dice_.chance(0.4) ? draw(dice_, -0.06, 0.06) : draw(dice_, -0.015, 0.015));
     sensor.right_offset = dice_.chance(0.3) ? draw(dice_, -0.012, 0.012) : 0;
