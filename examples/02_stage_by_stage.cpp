@@ -111,11 +111,14 @@ void run_default(const StereoPair& given, const std::optional<StereoRig>& rig, c
   const Background background = fit_background(textured_px, ground, rig, config.background, exec);
   const Image<float> surface_disparity_px = floor_under_reflections(disparity, ground, exec);
 
-  // Superpixels, a network's hints for them, and a tree of regions: the most similar pair merges first.
-  const Superpixels superpixels = cut_superpixels(left, surface_disparity_px, config.superpixels, exec);
+  // A network's hints, superpixels along the outlines that it expects, and a tree of regions: the most similar pair
+  // merges first.
+  Image<std::uint16_t> edges = superpixel_edges(left, exec);
   Cues cues{left, surface_disparity_px, textured_px, ground, background};
-  const Image<ObjectHint> hints = hint_objects(superpixels.edges, cues, exec);
+  const Image<ObjectHint> hints = hint_objects(edges, cues, exec);
   cues.hints = hints;
+  const Superpixels superpixels = cut_superpixels(std::move(edges), hints, surface_disparity_px,
+                                                  left.noise_sigma, config.superpixels, exec);
   const MergeTree tree = grow_merge_tree(superpixels, cues, merge_classifier(), exec);
 
   // Choose the regions that are objects, and measure them; then estimate the confidence of each disparity.

@@ -72,11 +72,15 @@ SEQUENCES = ["dev_seqA", "dev_seqB"]
 MIDDLEBURY = [f"real/middlebury{year}" for year in (2001, 2003, 2005, 2006, 2014)]
 FRAME_SETS = {"Rendered, 320x240": "rendered/dev/320x240", "Rendered, 640x480": "rendered/dev/640x480",
               "rc_tabletop, real, 640x480": "real/rc_tabletop"}
-SPLITS = {  # folders, and whether options were chosen on them
-    "dev 320x240": (["rendered/dev/320x240"], True), "dev 640x480": (["rendered/dev/640x480"], True),
-    "train 320x240": (["rendered/train/320x240"], True), "rc_tabletop": (["real/rc_tabletop"], True), "Middlebury": (MIDDLEBURY, True),
-    "validate 320x240": (["rendered/validate/320x240"], False), "validate 640x480": (["rendered/validate/640x480"], False),
-    "validate rc_tabletop": (["real/validate/rc_tabletop"], False), "validate Middlebury": (["real/validate/middlebury"], False),
+YARDSTICK = pathlib.Path("build/fit/yardstick").resolve()  # made by ./dev worlds yardstick
+SPLITS = {  # folders, and what they are used for
+    "train 320x240": (["rendered/train/320x240"], "fit"), "train_outdoor": (["rendered/train_outdoor/320x240"], "fit"),
+    "dev 320x240": (["rendered/dev/320x240"], "fit"), "dev 640x480": (["rendered/dev/640x480"], "fit"),
+    "yardstick indoors": ([YARDSTICK / "indoors"], "choices"), "yardstick outdoors": ([YARDSTICK / "outdoors"], "choices"),
+    "rc_tabletop": (["real/rc_tabletop"], "choices"), "Middlebury": (MIDDLEBURY, "choices"),
+    **{f"validate{kind} 320x240": ([f"rendered/validate{kind}/320x240"], "reports") for kind in ("", "_varied", "_models", "_outdoor")},
+    "validate 640x480": (["rendered/validate/640x480"], "reports"),
+    "validate rc_tabletop": (["real/validate/rc_tabletop"], "reports"), "validate Middlebury": (["real/validate/middlebury"], "reports"),
 }
 
 
@@ -244,17 +248,17 @@ def share_text(part, whole):
 
 def splits(data, threads):
     rows = []
-    for title, (folders, chosen_on) in SPLITS.items():
+    for title, (folders, use) in SPLITS.items():
         frames = [frame for folder in folders for frame in load_frames(data / folder) if frame.objects is not None]
         for name, settings in {"default": "", "default, grey": "input=grey", "paper": "preset=paper input=grey"}.items():
             s = Summary(score_all(frames, *configured(settings), threads))
-            rows.append([title, "yes" if chosen_on else "no", name, str(s.true_objects), share_text(s.found_50, s.true_objects),
+            rows.append([title, use, name, str(s.true_objects), share_text(s.found_50, s.true_objects),
                          share_text(s.found_75, s.true_objects), share_text(s.right_50, s.our_objects), percent(s.median_error),
                          number(s.phantoms_per_frame, ".2f")])
-    header = ["frames", "used for choices", "preset", "objects", "found 0.5, %", "found 0.75, %", "precision, %", "median E, %", "phantoms"]
+    header = ["frames", "used for", "preset", "objects", "found 0.5, %", "found 0.75, %", "precision, %", "median E, %", "phantoms"]
     return f"""## Fit and validation
 
-Options, features and trees were chosen on the sets marked *yes*, so results there are optimistic. [Fitted models](fitting.md) has the same sets scored by trees fitted without their scenes, and [failures](failures.md) shows what is missed. The other sets are only reported. In brackets: Wilson's 95 % interval. Middlebury's objects are only partly labelled, so precision is undefined there.
+Network and trees were fitted to the sets marked *fit* and to [worlds](worlds.md), so results there are optimistic; [fitted models](fitting.md) has worlds scored by trees fitted without them, and [failures](failures.md) shows what is missed. Options, cues and networks are chosen by the sets marked *choices*, above all the [yardstick](worlds.md#the-yardstick). The others are only reported. In brackets: Wilson's 95 % interval. Middlebury's objects are only partly labelled, so precision is undefined there.
 
 {table(header, rows, words=3)}
 """

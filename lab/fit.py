@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the trees that score regions and those that correct the disparity of an object (cairn/fitted/*.bin) to the fit
-set.
+"""Fits the trees that score regions and those that correct the disparity of an object (cairn/fitted/*.bin).
 
-fit.py TOOL DATA [--rooms FOLDER] [--folds N] [--work FOLDER] [--hints FOLDER] [--out FOLDER] [--page FILE]
-It needs the networks that fit_hints.py writes to the work folder. fit.py TOOL DATA --ablation FILE: refits without
-each kind of cue in turn, and reports the gain of each. fit.py TOOL DATA --distances [--out FOLDER]: fits only the trees
+fit.py TOOL WORLDS [--data DATA] [--yardstick FOLDER] [--folds N] [--work FOLDER] [--hints FILE] [--out FOLDER] [--page FILE]
+It needs the network that fit_hints.py writes to the work folder, and worlds that this network has not seen: trees
+fitted to hints of a network that has would trust them too much. fit.py TOOL WORLDS --ablation FILE: refits without
+each kind of cue in turn, and reports the gain of each. fit.py TOOL WORLDS --distances [--out FOLDER]: fits only the trees
 that correct disparities, to the objects that the library finds.
 
 Gradient boosting fits two scores and a correction: whether two neighbouring regions belong to the same object, on the pairs that occur
 while the merge tree grows; whether a region is a whole object, on the regions of such trees; and how far
 the disparity of a found object is from the true one. Which pairs and regions occur depends on the first score, so it is fitted twice. Regions always come from trees grown by a fit that has
-not seen their scene (cross-validation in `--folds` folds); so does every figure printed for the fit set. Frames under
-`validate` are only reported. Everything is seeded: the same frames give the same trees.
+not seen their scene (cross-validation in `--folds` folds); so does every figure printed for the fit set. The yardstick and
+the real frames are only reported. Everything is seeded: the same frames give the same trees.
 """
 import argparse
 import functools
@@ -28,8 +28,8 @@ import zlib
 import fitted_files
 import numpy as np
 
-WEIGHTS = {"rc_tabletop": 2.0, "middlebury": 4.0}  # per frame, since these sets are small
-PAIRS_KEPT = 0.3  # share of all pairs, of which there are millions
+ROOM_WEIGHT = 2.0  # of a frame of the data collection; there are few
+PAIRS_KEPT = 0.2  # share of all pairs, of which there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 400, 4
 BIAS_TREES, BIAS_DEPTH = 60, 4
@@ -37,7 +37,6 @@ DOUBT = 0.08  # px, kDoubt of cairn/objects/refine_objects.cpp
 MOST_CORRECTION = 1  # px, kMaxBias there
 LARGEST_ERROR = 1.2  # px; larger ones are mistakes of the matching, which no feature predicts
 SEED = 7
-HALVES = 2  # of the scenes; each network is fitted without one (fit_hints.py)
 MIDDLEBURY = ["2001/tsukuba", "2003/cones", "2003/teddy", "2005/Art", "2005/Laundry", "2005/Reindeer", "2006/Baby1",
               "2006/Lampshade1"]
 
@@ -56,28 +55,32 @@ def frames_in(folder):
     return sorted(p.parent for p in pathlib.Path(folder).glob("*/left.png") if (p.parent / "objects.png").exists())
 
 
-def fit_sets(data, rooms):
-    sets = {"dev 320x240": frames_in(data / "rendered/dev/320x240"),
-            "dev 640x480": frames_in(data / "rendered/dev/640x480"),
-            "train": frames_in(data / "rendered/train/320x240")}
-    for frame in frames_in(rooms) if rooms else []:
-        sets.setdefault("clutter" if frame.name.startswith("clutter") else "more rooms", []).append(frame)
-    sets["rc_tabletop"] = frames_in(data / "real/rc_tabletop")
-    sets["middlebury"] = [data / ("real/middlebury" + name) for name in MIDDLEBURY]
+def fit_sets(worlds, data):
+    """Worlds that the network has not seen, and our own rendered rooms and streets. The network was fitted to those of
+    train, too, but its loss there is no less than on dev, so its hints are not better than elsewhere."""
+    sets = {"worlds": frames_in(worlds)}
+    if data:
+        sets |= {name: frames_in(data / "rendered" / name / "320x240") for name in ("train", "train_outdoor")}
+        sets |= {f"dev {size}": frames_in(data / "rendered/dev" / size) for size in ("320x240", "640x480")}
+    return sets
+
+
+def checked_sets(yardstick, data):
+    """Choices are made by these; no number is fitted to them."""
+    sets = {f"yardstick {place}": frames_in(yardstick / place) for place in ("indoors", "outdoors")} if yardstick else {}
+    if data:
+        sets |= {"rc_tabletop": frames_in(data / "real/rc_tabletop"),
+                 "middlebury": [data / ("real/middlebury" + name) for name in MIDDLEBURY],
+                 "outdoor_fit": frames_in(data / "real/outdoor_fit")}
     return sets
 
 
 def sequences(data):
     """Every fourth frame: what follows each other is nearly the same."""
+    if not data:
+        return {}
     names = ("dev/sequences/dev_seqA", "dev/sequences/dev_seqB", "tour_train")
     return {"sequences": [frame for name in names for frame in frames_in(data / "rendered" / name)[::4]]}
-
-
-def validation_sets(data):
-    return {"validate 320x240": frames_in(data / "rendered/validate/320x240"),
-            "validate 640x480": frames_in(data / "rendered/validate/640x480"),
-            "validate rc_tabletop": frames_in(data / "real/validate/rc_tabletop"),
-            "validate middlebury": frames_in(data / "real/validate/middlebury")}
 
 
 def fold_of(frame, folds):
@@ -180,13 +183,12 @@ class Fitting:
         self.of_library = False  # find objects by the library's network and trees
         self.jobs = jobs_of(sets)
         self.fold = np.array([fold_of(frame, folds) for frame, _, _ in self.jobs])
-        self.weight = np.array([WEIGHTS.get(name, 1.0) for _, _, name in self.jobs])
+        self.weight = np.array([1 if name == "worlds" else ROOM_WEIGHT for _, _, name in self.jobs])
 
     def run(self, trees, *options, jobs=None):
-        """trees(i): the two files of job i. Frames of the fit set get hints of a network that has not seen them."""
+        """trees(i): the two files of job i."""
         def files(i):
-            half = "all" if jobs is not None else fold_of(self.jobs[i][0], HALVES)
-            return " ".join(map(str, ("-" if self.of_library else self.hints / f"hints_{half}", *trees(i))))
+            return " ".join(map(str, ("-" if self.of_library else self.hints, *trees(i))))
 
         return run_tool(self.tool, self.work, self.jobs if jobs is None else jobs, files, *options)
 
@@ -255,17 +257,19 @@ class Fitting:
             self.gains["whole_object"] = shares_of(model.gains, self.region_features)
             say(f"regions, without fold {fold}: {take.sum()} of them")
 
-    def fit_bias(self, trees, sequences, validation):
+    def fit_bias(self, trees, sequences, checked_jobs):
         """Fits the trees that correct the disparities of found objects. Returns a table of the errors before and after:
-        of the fit set and the sequences in folds, of the validation frames by the trees fitted to all. trees(i, jobs):
+        of the fit set and the sequences in folds, of the others by the trees fitted to all. trees(i, jobs):
         the files of job i."""
         def objects(jobs):
             self.run(lambda i: trees(i, jobs), "--bias", self.work / "bias@", jobs=jobs)
             return self.records("bias", len(self.bias_features))
 
-        (head, features), (more, more_features) = objects(None), objects(sequences)
-        more[:, 0] += len(self.jobs)
-        head, features = np.concatenate([head, more]), np.concatenate([features, more_features])
+        head, features = objects(None)
+        if sequences:
+            more, more_features = objects(sequences)
+            more[:, 0] += len(self.jobs)
+            head, features = np.concatenate([head, more]), np.concatenate([features, more_features])
         jobs = self.jobs + sequences
         job, bias = head[:, 0].astype(int), head[:, 1]
         object_fold = np.array([fold_of(frame, self.folds) for frame, _, _ in jobs])[job]
@@ -279,9 +283,9 @@ class Fitting:
                 left[~take] -= beyond_doubt(model.predict(features[~take]))
         model.write(self.model("disparity_bias", "all"))
         self.gains["disparity_bias"] = shares_of(model.gains, self.bias_features)
-        checked, features = objects(validation)
+        checked, features = objects(checked_jobs)
         return BIAS_HEAD + bias_rows(jobs, head, left) + bias_rows(
-            validation, checked, checked[:, 1] - beyond_doubt(model.predict(features)))
+            checked_jobs, checked, checked[:, 1] - beyond_doubt(model.predict(features)))
 
 
 def beyond_doubt(bias):
@@ -330,34 +334,17 @@ def shares_of(gains, names):
     return sorted(shares, key=lambda item: (-item[0], item[1]))
 
 
-def runs_of(numbers):
-    """"1 to 4, 6, 8 to 9" from numbers."""
-    runs = []
-    for number in numbers:
-        if runs and number == runs[-1][1] + 1:
-            runs[-1][1] = number
-        else:
-            runs.append([number, number])
-    return ", ".join(f"{a} to {b}" if a < b else str(a) for a, b in runs)
-
-
 def gains_table(fitting, kind, header):
     rows = [f"| {name} | {100 * share:.1f} |" for share, name in fitting.gains[kind] if share >= 0.005]
     return f"| {header} | share of the gain, % |\n|---|---:|\n" + "\n".join(rows)
 
 
 def frames_used(sets):
-    counts = ", ".join(f"{name} {len(frames)}" for name, frames in sets.items())
-    more = ""
-    for name, script in (("more rooms", "rooms.py"), ("clutter", "lab/cluttered_rooms.py GENERATOR")):
-        rooms = sorted(int(frame.name.rsplit("s", 1)[1]) for frame in sets.get(name, []))
-        if rooms:
-            more += f"*{name}*: the generator's numbers {runs_of(rooms)} (`{script} jobs.json FIRST LAST+1`).\n"
-    return f"Fitted to: {counts}; each frame once in colour and once in grey.\n{more}"
+    return "Fitted to: " + ", ".join(f"{name} {len(frames)}" for name, frames in sets.items()) + \
+        "; each frame once in colour and once in grey. *worlds*: [worlds](worlds.md) that the network has not seen.\n"
 
 
 def page_of_distances(fitting, sets, distances):
-    rendered = {name: frames for name, frames in sets.items() if name not in WEIGHTS}  # the others have no exact truth
     masks = ("the library's trees, which have seen most of these scenes" if fitting.of_library
              else "trees fitted without their scene")
     return f"""# Fitted distances
@@ -365,9 +352,9 @@ def page_of_distances(fitting, sets, distances):
 <!-- Written by ./dev fit; do not edit. -->
 
 This page reports how well the fitted trees of [`refine_objects()`](stages/objects.md#its-disparity-refined) correct the disparity of an object.
-{frames_used(rendered)}Also fitted to every fourth frame of the rendered sequences.
+{frames_used(sets)}Also fitted to every fourth frame of the rendered sequences.
 An error is the difference between the object's disparity, with the shift by the images, and the median true disparity of the true object that it overlaps by an IoU of 0.5 or more. The objects are found by {masks}.
-Frames of the fit set and of sequences are corrected by trees fitted without their scene, in {fitting.folds} folds. Validation frames are corrected by the library's trees, and were not used for any choice.
+Frames of the fit set and of sequences are corrected by trees fitted without their scene, in {fitting.folds} folds. The others are corrected by the library's trees.
 Errors in px: means, each error counted as {LARGEST_ERROR} px at most. A correction is reduced by {DOUBT} px.
 
 {distances}
@@ -385,8 +372,8 @@ def page(fitting, sets, reports, score):
 <!-- Written by ./dev fit; do not edit. -->
 
 This page reports how well the preset `default` finds objects with its fitted trees ([grouping](stages/grouping.md)) and the network of its [hints](stages/object_hints.md). `./dev fit` fits both and writes them and this page: the same frames give the same numbers on the same processor.
-{frames_used(sets)}Frames of the fit set are scored by trees fitted without their scene, in {fitting.folds} folds, with hints of a network fitted without their scene, in {HALVES} halves. Validation frames are scored by the library's trees and network, and were not used for any choice.
-In brackets: Wilson's 95 % interval. ms: one core's time for the median frame, from the superpixels to the choice of objects, on a shared machine.
+{frames_used(sets)}Frames of the fit set are scored by trees fitted without their scene, in {fitting.folds} folds. The others are scored by the library's trees: the [yardstick](worlds.md#the-yardstick), by which choices are made, and real frames, to which nothing is fitted. [Accuracy](accuracy.md) reports validation.
+In brackets: Wilson's 95 % interval. ms: one core's time for the median frame, from the merge tree to the choice of objects, on a shared machine.
 `objects.min_confidence` = {score}.
 
 {reports}
@@ -440,21 +427,21 @@ def report(rows, jobs):
     return "\n".join(lines)
 
 
-def ablation(fitting, validation, path):
-    """Refits without one kind of cue at a time and counts the objects found on the validation frames."""
-    names = {"all frames": lambda name: True, "rooms": lambda name: "x" in name, "tabletops": lambda name: "rc" in name,
-             "Middlebury": lambda name: "middlebury" in name}
+def ablation(fitting, checked, path):
+    """Refits without one kind of cue at a time and counts the objects found on the yardstick and the real frames."""
+    names = {"all frames": lambda name: True, "yardstick": lambda name: "yardstick" in name,
+             "tabletops": lambda name: "rc" in name, "Middlebury": lambda name: "middlebury" in name}
     lines = ["| without | " + " | ".join(f"{name}, {colour}" for name in names for colour in ("colour", "grey")) +
              " | precision |", "|---|" + "---|" * (2 * len(names) + 1)]
     for cue, words in {"–": (), **CUES}.items():
         fitting.without = words
         fitting.fit_pairs()
         fitting.fit_regions()
-        rows = fitting.run(fitting.of_all, "--min-score", "0.3", jobs=validation)
+        rows = fitting.run(fitting.of_all, "--min-score", "0.35", jobs=checked)
         cells = []
         for chosen in names.values():
             for colour in ("colour", "grey"):
-                iou = np.array([float(v) for row, job in zip(rows, validation) if chosen(job[2]) and job[1] == colour
+                iou = np.array([float(v) for row, job in zip(rows, checked) if chosen(job[2]) and job[1] == colour
                                 for v in row[6][1:].split(",") if v])
                 cells.append(share_of((iou >= .5).sum(), len(iou)))
         complete = [row for row in rows if row[2] == "0"]
@@ -465,8 +452,8 @@ def ablation(fitting, validation, path):
 
 <!-- Written by ./dev fit --ablation; do not edit. -->
 
-This page shows how much each kind of cue contributes: objects found (IoU ≥ 0.5) on the validation frames, in colour and in grey, after fitting both sets of trees again without the features of one kind.
-The trees were fitted to {len(fitting.jobs) // 2} frames without the rendered rooms that `./dev fit ROOMS` adds, in {fitting.folds} folds, so the first row differs from [fitted models](fitting.md); the [hints](stages/object_hints.md) come from the networks of an earlier `./dev fit`. A difference of fewer than three objects is noise.
+This page shows how much each kind of cue contributes: objects found (IoU ≥ 0.5) on the [yardstick](worlds.md#the-yardstick) and on real frames, in colour and in grey, after fitting both sets of trees again without the features of one kind.
+The trees were fitted to {len(fitting.jobs) // 2} frames, in {fitting.folds} folds; the [hints](stages/object_hints.md) come from the network of an earlier `./dev fit`. A difference of fewer than three objects is noise.
 
 """ + "\n".join(lines) + "\n\n" + "\n".join(
         f"- **{cue}**: features whose names contain " + ", ".join(f"“{word}”" for word in words) + "."
@@ -483,27 +470,28 @@ def say(text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("tool", type=pathlib.Path)
-    parser.add_argument("data", type=pathlib.Path)
-    parser.add_argument("--rooms", type=pathlib.Path, help="more rooms, rendered by tools/render")
-    parser.add_argument("--folds", type=int, default=5)
+    parser.add_argument("worlds", type=pathlib.Path, help="frames that the network has not seen")
+    parser.add_argument("--data", type=pathlib.Path, help="the data collection: rendered rooms are added to the fit")
+    parser.add_argument("--yardstick", type=pathlib.Path, help="frames that are only reported")
+    parser.add_argument("--folds", type=int, default=2)
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
-    parser.add_argument("--hints", type=pathlib.Path, help="the folder with fitted networks, if not the work folder")
+    parser.add_argument("--hints", type=pathlib.Path, help="the fitted network, if not that of the work folder")
     parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn)")
     parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
     parser.add_argument("--distances", action="store_true", help="fit only the trees that correct disparities")
     parser.add_argument("--distances-page", type=pathlib.Path,
                         help="where their report is written (docs/fitted_distances.md)")
     parser.add_argument("--ablation", type=pathlib.Path, help="where the ablation report is written")
-    parser.add_argument("--min-scores", default="0.3", help="thresholds for the report; the page shows the first")
+    parser.add_argument("--min-scores", default="0.35", help="thresholds for the report; the page shows the first")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
-    sets = fit_sets(arguments.data, arguments.rooms)
-    fitting = Fitting(arguments.tool, arguments.work, arguments.hints or arguments.work, arguments.folds, sets)
+    sets = fit_sets(arguments.worlds, arguments.data)
+    fitting = Fitting(arguments.tool, arguments.work, arguments.hints or arguments.work / "hints", arguments.folds, sets)
     say(f"{len(fitting.jobs)} frames, colour and grey")
-    validation = jobs_of(validation_sets(arguments.data))
+    checked = jobs_of(checked_sets(arguments.yardstick, arguments.data))
     tracked = jobs_of(sequences(arguments.data))
     if arguments.ablation:
-        return ablation(fitting, validation, arguments.ablation)
+        return ablation(fitting, checked, arguments.ablation)
 
     def write_fitted(kind):
         if not arguments.out:
@@ -514,17 +502,17 @@ def main():
 
     if arguments.distances:
         fitting.of_library = True
-        distances = fitting.fit_bias(lambda i, jobs: ("-", "-"), tracked, validation)
+        distances = fitting.fit_bias(lambda i, jobs: ("-", "-"), tracked, checked)
     else:
         fitting.fit_pairs()
         fitting.fit_regions()
         distances = fitting.fit_bias(
-            lambda i, jobs: fitting.of_fold(i) if jobs is None else fitting.of_all(i), tracked, validation)
+            lambda i, jobs: fitting.of_fold(i) if jobs is None else fitting.of_all(i), tracked, checked)
         for score in arguments.min_scores.split(","):
             rows = fitting.run(fitting.of_fold, "--min-score", score)
-            checked = fitting.run(fitting.of_all, "--min-score", score, jobs=validation)
+            others = fitting.run(fitting.of_all, "--min-score", score, jobs=checked)
             print(f"\nobjects.min_confidence={score}; fit set in {arguments.folds} folds by scene\n")
-            reports = report(rows, fitting.jobs) + "\n\n" + report(checked, validation)
+            reports = report(rows, fitting.jobs) + "\n\n" + report(others, checked)
             print(reports, flush=True)
             if arguments.page and score == arguments.min_scores.split(",")[0]:
                 arguments.page.write_text(page(fitting, sets, reports, score))

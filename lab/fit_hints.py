@@ -43,9 +43,15 @@ CALIBRATION = 200  # frames that show how large activations are
 # ---- frames
 
 def gather(tool, store, frames):
-    """Writes `cells` (int16) and `truth` (uint8: 0 no object) of frames 0, 1 … in colour and in grey, in turn."""
+    """Writes `cells` (int16) and `truth` (uint8: 0 no object) of frames 0, 1 … in colour and in grey, in turn; nothing
+    if that is done."""
     parts = os.cpu_count()
     store.mkdir(parents=True, exist_ok=True)
+    done = store / "frames.txt"
+    listed = "".join(f"{frame}\n" for frame in frames)
+    if done.exists() and done.read_text() == listed:
+        return
+    done.unlink(missing_ok=True)
     jobs = [(frame, colour, "") for frame in frames for colour in ("colour", "grey")]
     run_tool(tool, store, jobs, lambda i: "- - -", "--inputs", store / "inputs@", parts=parts)
     cells = np.lib.format.open_memmap(store / "cells.npy", "w+", np.int16, (len(jobs), CHANNELS, HEIGHT, WIDTH))
@@ -61,6 +67,8 @@ def gather(tool, store, frames):
             cells[job] = row[4:4 + area * CHANNELS].reshape(HEIGHT, WIDTH, CHANNELS).transpose(2, 0, 1)
             truth[job] = np.where(row[4 + area * CHANNELS:] < 0, DONT_CARE, row[4 + area * CHANNELS:]).reshape(HEIGHT, WIDTH)
         (store / f"inputs{part}").unlink()
+        (store / f"jobs{part}").unlink()
+    done.write_text(listed)
 
 
 class Frames:
@@ -333,6 +341,7 @@ def fitted(frames, steps, width, checkpoint):
     device = frames.device
     net, mean = (network(width).to(device, memory_format=torch.channels_last) for _ in range(2))
     mean.load_state_dict(net.state_dict())
+    kept, new = ([v for v in one.state_dict().values() if v.dtype.is_floating_point] for one in (mean, net))
     sampler = Sampler(frames)
     optimizer = torch.optim.AdamW(net.parameters(), RATE, weight_decay=DECAY)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, RATE, total_steps=steps, pct_start=0.15)
@@ -357,8 +366,8 @@ def fitted(frames, steps, width, checkpoint):
         schedule.step()
         losses += (loss.detach() - losses) * (0.02 if step > first else 1)
         with torch.no_grad():
-            for kept, new in zip(mean.state_dict().values(), net.state_dict().values()):
-                kept.copy_(new) if not kept.dtype.is_floating_point else kept.lerp_(new, 0.01)
+            torch._foreach_mul_(kept, 0.99)
+            torch._foreach_add_(kept, new, alpha=0.01)
         if (step + 1) % 100 == 0:
             print(f"{time.time() - begin:6.0f} s  step {step + 1}: {' '.join(f'{v:.3f}' for v in losses.tolist())}", flush=True)
         if time.time() - saved > CHECKPOINT_SECONDS:
@@ -404,8 +413,10 @@ def rounded(net, frames):
         unit = np.maximum(np.abs(weight).max(axis=(1, 2, 3)), 1e-9) / 127
         whole = np.round(weight / unit[:, None, None, None]).astype(np.int64)
         whole_bias = np.round(bias / unit * of).astype(np.int64)
-        assert (np.abs(whole).sum(axis=(1, 2, 3)) * GREATEST + np.abs(whole_bias)).max() < 2**31, "a sum may overflow"
         side, stride = convolution.kernel_size[0], convolution.stride[0]
+        # Sums of 3×3 windows are computed times four: convolve_two().
+        greatest = (np.abs(whole).sum(axis=(1, 2, 3)) * GREATEST + np.abs(whole_bias)).max()
+        assert greatest * (4 if (side, stride) == (3, 1) else 1) < 2**31, "a sum may overflow"
         layers.append(((whole.shape[1], whole.shape[0], side, stride, -GREATEST if end else 0),
                        whole.transpose(2, 3, 1, 0).ravel(), whole_bias, (unit / of * into).astype(np.float32)))
     return layers
@@ -453,7 +464,7 @@ def main():
     command.add_argument("stores", type=pathlib.Path, nargs="+")
     command.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
     command.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
-    command.add_argument("--steps", type=int, default=12000)
+    command.add_argument("--steps", type=int, default=11000)
     command.add_argument("--width", type=float, default=1.0, help="of all layers")
     command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
     command.add_argument("--name", default="hints", help="of the file in the work folder")

@@ -291,7 +291,8 @@ void work(const Job& of, float min_score, Files& files) {
   const View<const Gray> left = frame.images.left.gray;
   StageClock stage(exec);
   FrameInput in{{left, grey ? View<const Rgb>{} : frame.images.left.rgb.view()}, frame.images.right.gray};
-  RegionCandidates cut = superpixel_candidates(in, {frame.rig, config, exec}, nullptr, stage);
+  RegionCandidates cut = superpixel_candidates(in, {frame.rig, config, exec},
+                                               files.inputs.is_open() ? nullptr : &network, stage);
   const Superpixels& superpixels = cut.superpixels;
   if (files.inputs.is_open()) {
     record_input(files.inputs, job, hint_input(superpixels.edges, cut.cues(in.left), exec), frame);
@@ -303,7 +304,6 @@ void work(const Job& of, float min_score, Files& files) {
   if (files.pairs.is_open())
     on_judged = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
   const double start = timing::now_ms(CLOCK_THREAD_CPUTIME_ID);
-  cut.hints = hint_objects(hint_input(superpixels.edges, cut.cues(in.left), exec), network, exec);
   const MergeTree tree = grow_merge_tree(superpixels, cut.cues(in.left), same_thing, exec, on_judged);
   config.objects.min_confidence = min_score;
   const ChosenObjects chosen = choose_objects(tree, whole_object, limits_of(config.objects, left.size()));

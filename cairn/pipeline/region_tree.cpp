@@ -39,17 +39,15 @@ RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const Hin
   found.surface_disparity_px =
       stage("floor_under_reflections", floor_under_reflections(stereo.disparity, stereo.ground, exec));
 
-  // Superpixels, and concurrently the hints of the network; both need the edges of the image.
-  const Image<std::uint16_t> edges = stage("superpixel_edges", superpixel_edges(in.left, exec));
-  Future<Superpixels> superpixels(exec, [&](const Exec& concurrent) {
-    return cut_superpixels(edges.clone(concurrent.pool), found.surface_disparity_px, in.left.noise_sigma,
-                           run.config.superpixels, concurrent);
-  });
+  // The hints of the network, and superpixels along the outlines that it expects.
+  Image<std::uint16_t> edges = stage("superpixel_edges", superpixel_edges(in.left, exec));
   if (network) {
     found.hints =
         stage("hint_objects", hint_objects(hint_input(edges, found.cues(in.left), exec), *network, exec));
   }
-  found.superpixels = stage("cut_superpixels", superpixels.get());
+  found.superpixels =
+      stage("cut_superpixels", cut_superpixels(std::move(edges), found.hints, found.surface_disparity_px,
+                                               in.left.noise_sigma, config.superpixels, exec));
   return found;
 }
 

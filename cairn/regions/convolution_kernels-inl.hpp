@@ -58,10 +58,10 @@ HWY_INLINE void put(hn::Vec<Sums> sum, const Convolution& by, int output, std::i
   hn::StoreU(hn::DemoteTo(Narrow(), hn::Sub(shifted, hn::BitCast(Sums(), shift))), Narrow(), out + output);
 }
 
-/// The outputs of kPixels pixels, in kVectors vectors each.
+/// The outputs of kPixels pixels from `output` on, in kVectors vectors each.
 template <int kVectors, int kPixels>
-HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& by, std::ptrdiff_t first,
-                           std::int16_t* HWY_RESTRICT out) {
+HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& by, int output,
+                           std::ptrdiff_t first, std::int16_t* HWY_RESTRICT out) {
   const Sums d;
   const Products pairs;
   hn::Vec<Sums> sums[kPixels][kVectors];
@@ -74,11 +74,11 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
       others[p][v] = hn::Zero(d);
     }
   }
-  const std::int16_t* HWY_RESTRICT weights = by.weights;
+  const std::int16_t* HWY_RESTRICT weights = by.weights + 2 * output;
   const int step = by.stride * by.inputs;
   for (int row = 0; row < by.side; ++row) {
     const std::int16_t* HWY_RESTRICT in = rows[row] + first * step;
-    for (int i = 0; i < by.side * by.inputs; i += 2) {
+    for (int i = 0; i < by.side * by.inputs; i += 2, weights += 2 * by.outputs) {
       hn::Vec<Products> two[kPixels];
 #pragma GCC unroll 12
       for (int p = 0; p < kPixels; ++p) {
@@ -88,8 +88,7 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
       }
 #pragma GCC unroll 12
       for (int v = 0; v < kVectors; ++v) {
-        const auto w = hn::LoadU(pairs, weights);
-        weights += 2 * kLanes;
+        const auto w = hn::LoadU(pairs, weights + 2 * v * kLanes);
 #pragma GCC unroll 12
         for (int p = 0; p < kPixels; ++p)
           sums[p][v] = hn::ReorderWidenMulAccumulate(d, two[p], w, sums[p][v], others[p][v]);
@@ -100,34 +99,43 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
   for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 12
     for (int v = 0; v < kVectors; ++v)
-      put(hn::RearrangeToOddPlusEven(sums[p][v], others[p][v]), by, v * kLanes, out + p * by.outputs);
+      put(hn::RearrangeToOddPlusEven(sums[p][v], others[p][v]), by, output + v * kLanes,
+          out + p * by.outputs);
   }
 }
 
 /// A row, several pixels at a time: as many sums as fit in registers.
 template <int kVectors>
-HWY_INLINE void row_of(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out) {
+HWY_INLINE void row_of(const std::int16_t* const* rows, const Convolution& by, int output, int width,
+                       std::int16_t* out) {
   constexpr int kPixels = kVectors < 6 ? 12 / kVectors : 2;
   int x = 0;
   for (; x + kPixels <= width; x += kPixels)
-    outputs_of<kVectors, kPixels>(rows, by, x, out + std::ptrdiff_t{x} * by.outputs);
-  for (; x < width; ++x) outputs_of<kVectors, 1>(rows, by, x, out + std::ptrdiff_t{x} * by.outputs);
+    outputs_of<kVectors, kPixels>(rows, by, output, x, out + std::ptrdiff_t{x} * by.outputs);
+  for (; x < width; ++x) outputs_of<kVectors, 1>(rows, by, output, x, out + std::ptrdiff_t{x} * by.outputs);
 }
 
 inline void convolve(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out) {
-  switch (by.outputs / 8) {
-    case 1:
-      return row_of<8 / kLanes>(rows, by, width, out);
-    case 2:
-      return row_of<16 / kLanes>(rows, by, width, out);
-    case 3:
-      return row_of<24 / kLanes>(rows, by, width, out);
-    case 4:
-      return row_of<32 / kLanes>(rows, by, width, out);
-    case 5:
-      return row_of<40 / kLanes>(rows, by, width, out);
-    default:
-      return row_of<48 / kLanes>(rows, by, width, out);
+  for (int output = 0; output < by.outputs; output += 48) {
+    switch (std::min(by.outputs - output, 48) / 8) {
+      case 1:
+        row_of<8 / kLanes>(rows, by, output, width, out);
+        break;
+      case 2:
+        row_of<16 / kLanes>(rows, by, output, width, out);
+        break;
+      case 3:
+        row_of<24 / kLanes>(rows, by, output, width, out);
+        break;
+      case 4:
+        row_of<32 / kLanes>(rows, by, output, width, out);
+        break;
+      case 5:
+        row_of<40 / kLanes>(rows, by, output, width, out);
+        break;
+      default:
+        row_of<48 / kLanes>(rows, by, output, width, out);
+    }
   }
 }
 

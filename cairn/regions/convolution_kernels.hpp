@@ -24,7 +24,7 @@ struct Convolution {
 };
 
 /// The largest number of outputs.
-inline constexpr int kMaxOutputs = 48;
+inline constexpr int kMaxOutputs = 96;
 
 /// The number of elements of a transformed tile of convolve_two().
 inline constexpr int kPlaces = 16;

@@ -5,6 +5,7 @@
 #include <cairn/image/gradient.hpp>
 #include <cairn/regions/cue_kernels.hpp>
 #include <cairn/regions/fuse_basins.hpp>
+#include <cairn/regions/object_hints.hpp>
 #include <cairn/regions/refine_outlines.hpp>
 #include <cairn/regions/superpixel_regions.hpp>
 #include <cairn/regions/superpixels.hpp>
@@ -24,6 +25,54 @@ constexpr float kLargestStep = 4.0F;  // px
 constexpr float kFlat = 4.0F;         // 1/4 grey level; weaker edges are ignored …
 constexpr float kFlatInNoise = 4.0F;  // … and this much more per grey level of noise
 constexpr int kMinCells = 1000;       // per superpixel, to be halved
+constexpr int kOutlineGain = 4;       // of the edges where the network is sure of an outline …
+constexpr int kOutlineStep = 32;      // … and 1/4 grey levels added
+constexpr int kStrongest = 65000;     // steps of disparity are added to it
+
+/// How far from the last cell's centre to the next one's a pixel is, in 1/256. Cells beyond the border are those at it.
+struct Between {
+  int first = 0;
+  int next = 0;
+  int part = 0;
+};
+
+Between between(int pixel, int pixels, int cells) {
+  const int twice = 2 * pixels;
+  const int position = (2 * pixel + 1) * cells - pixels + twice;  // in 1/twice of a cell, one cell added
+  const int first = position / twice - 1;
+  return {std::max(first, 0), std::min(first + 1, cells - 1), position % twice * 256 / twice};
+}
+
+/// Edges, stronger where the network expects outlines.
+Image<std::uint16_t> with_outlines(View<const std::uint16_t> edges, View<const ObjectHint> hints,
+                                   const Exec& exec) {
+  const Size size = edges.size();
+  Image<Between> across({size.width, 1}, exec.pool);
+  for (int x = 0; x < size.width; ++x) across(x, 0) = between(x, size.width, hints.width());
+  Image<int> shares({hints.width(), size.height}, exec.pool);  // of a row's pixels at the cells' centres
+  Image<std::uint16_t> stronger(size, exec.pool);
+  parallel_for(exec, size.height, kGrain, [&](int first_row, int last_row) {
+    for (int y = first_row; y < last_row; ++y) {
+      const Between down = between(y, size.height, hints.height());
+      const ObjectHint* const above = hints.row(down.first);
+      const ObjectHint* const below = hints.row(down.next);
+      int* const row = shares.row(y);
+      for (int c = 0; c < hints.width(); ++c)
+        row[c] =
+            outline_share(above[c].outline) * (256 - down.part) + outline_share(below[c].outline) * down.part;
+      const std::uint16_t* const in = edges.row(y);
+      std::uint16_t* const out = stronger.row(y);
+      for (int x = 0; x < size.width; ++x) {
+        const auto [first, next, part] = across(x, 0);
+        const int share = (row[first] * (256 - part) + row[next] * part) >> 16;
+        const int edge = in[x];
+        out[x] = static_cast<std::uint16_t>(
+            std::min(edge + (((kOutlineGain - 1) * edge + kOutlineStep) * share >> 8), kStrongest));
+      }
+    }
+  });
+  return stronger;
+}
 
 /// Edges plus steps of disparity; 0 where neither exceeds the noise, which would cause most of the basins.
 Image<std::uint16_t> with_steps(View<const std::uint16_t> edges, View<const float> disparity_px,
@@ -62,11 +111,17 @@ Image<std::uint16_t> superpixel_edges(const LeftImage& left, const Exec& exec) {
   return edge_strength(left.gray, left.rgb, kSmoothing, exec);
 }
 
-Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> disparity_px, float noise_sigma,
+Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const ObjectHint> hints,
+                            View<const float> disparity_px, float noise_sigma,
                             const SuperpixelsConfig& config, const Exec& exec) {
   // Levels of half the size each: superpixels are cut at the last, and their outlines refined at those before.
   std::vector<Image<std::uint16_t>> levels;
-  levels.push_back(with_steps(edges, disparity_px, noise_sigma, exec));
+  if (hints.empty()) {
+    levels.push_back(with_steps(edges, disparity_px, noise_sigma, exec));
+  } else {
+    const Image<std::uint16_t> stronger = with_outlines(edges, hints, exec);
+    levels.push_back(with_steps(stronger, disparity_px, noise_sigma, exec));
+  }
   while (levels.back().size().area() / config.count >= kMinCells)
     levels.push_back(halved(levels.back(), exec));
   Basins basins = fuse_basins(watershed(levels.back(), exec), levels.back(), config.count, exec);
@@ -77,7 +132,7 @@ Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> dispar
 
 Superpixels cut_superpixels(const LeftImage& left, View<const float> disparity_px,
                             const SuperpixelsConfig& config, const Exec& exec) {
-  return cut_superpixels(superpixel_edges(left, exec), disparity_px, left.noise_sigma, config, exec);
+  return cut_superpixels(superpixel_edges(left, exec), {}, disparity_px, left.noise_sigma, config, exec);
 }
 
 Segmentation superpixel_regions(const Superpixels& superpixels, View<const Gray> left, const Exec& exec) {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
 #include <cairn/core/ids.hpp>
@@ -11,6 +12,8 @@
 #include <cstdint>
 
 namespace cairn {
+
+struct ObjectHint;
 
 struct SuperpixelsConfig {
   int count = 250;  // superpixels; more follow small objects, and take longer
@@ -28,8 +31,14 @@ struct Superpixels {
   Image<std::uint16_t> edges;  // superpixel_edges(), in 1/4 grey level
 };
 
-/// Superpixels by watershed and merging. The edge image is edge_strength() at σ = 0.7 px, plus 2 grey levels
-/// per px of the largest disparity step to one of the four neighbours (at most 8, rounded to 1/4), so that
+/// How likely an outline is, 0 … 256, from its log-odds in 1/16: 0 up to −2, 256 from 2 on, straight in between.
+constexpr int outline_share(int log_odds) {
+  return 4 * std::clamp(log_odds + 32, 0, 64);
+}
+
+/// Superpixels by watershed and merging. The edge image is edge_strength() at σ = 0.7 px, stronger where the network
+/// expects the outline of an object (four times as strong plus 8 grey levels where it is sure: see
+/// outline_share()), plus 2 grey levels per px of the largest disparity step to one of the four neighbours (at most 8, rounded to 1/4), so that
 /// depth separates surfaces of equal brightness; values below 1 + noise_sigma grey levels (rounded down to
 /// 1/4) are set to 0. While it has at least 1000 pixels per superpixel, it is halved: means of 2×2, rounded. Basins of
 /// its watershed with less than 1/40 of the pixels of an average superpixel join the neighbour across their lowest
@@ -47,10 +56,11 @@ struct Superpixels {
 Superpixels cut_superpixels(const LeftImage& left, View<const float> disparity_px,
                             const SuperpixelsConfig& config, const Exec& exec);
 
-/// The same in two steps: first the edges of the image, edge_strength() at σ = 0.7 px …
+/// The same in steps: first the edges of the image, edge_strength() at σ = 0.7 px …
 Image<std::uint16_t> superpixel_edges(const LeftImage& left, const Exec& exec);
-/// … then the superpixels.
-Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const float> disparity_px, float noise_sigma,
+/// … then the superpixels. `hints`: hint_objects(); may be empty.
+Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const ObjectHint> hints,
+                            View<const float> disparity_px, float noise_sigma,
                             const SuperpixelsConfig& config, const Exec& exec);
 
 /// The superpixels as a segmentation, with their grey level statistics.

@@ -41,8 +41,8 @@ void write_text(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
-WorldFrame make_frame(const WorldOptions& options, int index, int samples) {
-  WorldFrame frame{make_world(options, index), {}, {}, {}};
+WorldFrame make_frame(World world, int samples) {
+  WorldFrame frame{std::move(world), {}, {}, {}};
   Rendered rendered = render(frame.world.scene, samples);
   Sensor& sensor = frame.world.sensor;
   sensor.exposure /= std::max(metered(rendered.left), 1e-4F);

@@ -16,8 +16,8 @@ struct WorldFrame {
   Truth truth;
 };
 
-/// Draws, renders and exposes world number `index`.
-WorldFrame make_frame(const WorldOptions& options, int index, int samples);
+/// Renders and exposes a world, with `samples` rays per pixel.
+WorldFrame make_frame(World world, int samples);
 
 /// Writes left.png, right.png, disp_left.png, objects.png, occlusion.png, ground.png, calib.txt and scene.json, as in a
 /// data set of frames (docs/formats.md); the folder appears whole. Throws Error if it cannot be written.

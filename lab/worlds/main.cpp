@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // worlds frames FIRST LAST -o DIR: writes frames of worlds; worlds sheet FIRST LAST -o FILE.png: a contact sheet;
-// worlds yardstick -o DIR: the frames that choices are measured by (docs/worlds.md).
+// worlds yardstick -o DIR: the frames that choices are measured by (docs/worlds.md); worlds laboratory -o DIR: the paper's
+// experiment made again (docs/paper.md).
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cairn/core/error.hpp>
@@ -63,7 +64,8 @@ void write_frames(const Arguments& arguments) {
     std::array<char, 16> name{};
     std::snprintf(name.data(), name.size(), "world_%05d", i);
     const fs::path folder = fs::path(arguments.out) / name.data();
-    if (!fs::exists(folder)) write_frame(make_frame(arguments.world, i, arguments.samples), folder);
+    if (!fs::exists(folder))
+      write_frame(make_frame(make_world(arguments.world, i), arguments.samples), folder);
   });
 }
 
@@ -81,6 +83,20 @@ void write_yardstick(Arguments arguments) {
   write_frames(arguments);
 }
 
+void write_laboratory(Arguments arguments) {
+  for (int s = 0; s < kLaboratorySequences; ++s) {
+    const fs::path folder = fs::path(arguments.out) / std::to_string(s);
+    fs::create_directories(folder);
+    arguments.last = kLaboratoryFrames - 1;
+    for_each_world(arguments, [&](int i) {
+      std::array<char, 8> name{};
+      std::snprintf(name.data(), name.size(), "%03d", i);
+      if (!fs::exists(folder / name.data()))
+        write_frame(make_frame(make_laboratory(s, i), arguments.samples), folder / name.data());
+    });
+  }
+}
+
 void draw_sheet(const Arguments& arguments) {
   constexpr int kColumns = 6, kGap = 4;
   constexpr std::array kColours{Rgb{80, 120, 230}, Rgb{230, 110, 70}, Rgb{70, 190, 90},  Rgb{220, 190, 60},
@@ -89,7 +105,7 @@ void draw_sheet(const Arguments& arguments) {
   const int count = arguments.last - arguments.first + 1, rows = (count + kColumns - 1) / kColumns;
   Image<Rgb> sheet({(size.width + kGap) * kColumns, (size.height + kGap) * 2 * rows}, Rgb{255, 255, 255}, {});
   for_each_world(arguments, [&](int i) {
-    const WorldFrame frame = make_frame(arguments.world, i, arguments.samples);
+    const WorldFrame frame = make_frame(make_world(arguments.world, i), arguments.samples);
     const int k = i - arguments.first, left = k % kColumns * (size.width + kGap),
               top = k / kColumns * 2 * (size.height + kGap);
     for (int y = 0; y < size.height; ++y) {
@@ -142,6 +158,7 @@ int run(int argc, char** argv) {
   CLI::App* const frames =
       declare_drawn("frames", "writes one folder per world; folders that exist are left as they are");
   CLI::App* const yardstick = declare("yardstick", "writes the frames that choices are measured by");
+  const CLI::App* const laboratory = declare("laboratory", "writes the four sequences of docs/paper.md");
   declare_drawn("sheet", "draws left images and ids");
   try {
     app.parse(argc, argv);
@@ -149,6 +166,10 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     std::cerr << "worlds: " << error.what() << "\n";
     return 2;
+  }
+  if (laboratory->parsed()) {
+    write_laboratory(arguments);
+    return 0;
   }
   if (yardstick->parsed()) {
     if (models_for(Use::yardstick).empty()) throw Error("the yardstick needs sweethome3d-furniture");

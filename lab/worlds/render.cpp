@@ -169,9 +169,9 @@ struct Seen {
   const Body* body = nullptr;  // nullptr: nothing to smooth
   Vec3 point;
   Vec3 normal;
-  Vec3 soft;    // seen times `albedo`
+  Vec3 soft;  // seen times `albedo`
   Vec3 albedo;
-  Vec3 rest;    // the sun's light, mirrored light, what shines
+  Vec3 rest;  // the sun's light, mirrored light, what shines
 };
 
 /// Light along rays.
@@ -263,7 +263,8 @@ Vec3 direction_of(const Rig& rig, float x, float y) {
 
 /// The soft light at a sample: the mean over the samples of the same number on the same surface, in a window
 /// around its pixel. `seen`: pixel by pixel.
-Vec3 smoothed(const std::vector<Seen>& seen, Size size, int x, int y, std::size_t which, std::size_t per_pixel) {
+Vec3 smoothed(const std::vector<Seen>& seen, Size size, int x, int y, std::size_t which,
+              std::size_t per_pixel) {
   const auto at = [&](int column, int row) -> const Seen& {
     return seen[static_cast<std::size_t>(row * size.width + column) * per_pixel + which];
   };

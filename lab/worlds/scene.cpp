@@ -15,11 +15,11 @@
 namespace cairn::worlds {
 namespace {
 
-constexpr int kTries = 24;        // places tried for a thing
-constexpr float kLevel = 0.015F;  // m, by which the ground below a thing may differ
-constexpr float kSmall = 0.09F;   // half of a side, of the image's width; smaller things are rare
-constexpr float kLargest = 0.45F; // of the image, for a thing's bounding box
-constexpr double kModels = 0.35;  // share of models among the things indoors
+constexpr int kTries = 24;         // places tried for a thing
+constexpr float kLevel = 0.015F;   // m, by which the ground below a thing may differ
+constexpr float kSmall = 0.09F;    // half of a side, of the image's width; smaller things are rare
+constexpr float kLargest = 0.45F;  // of the image, for a thing's bounding box
+constexpr double kModels = 0.35;   // share of models among the things indoors
 constexpr double kSupports = 0.6;  // how often something to stand on is placed where nothing can be stood on
 
 // ---- what stands where ----
@@ -374,7 +374,8 @@ class Builder {
   bool add_support(float bottom, const Amount& amount) {
     const bool is_small = amount.most_m > 0;
     const float scale = is_small ? 0.35F : 1;
-    const Vec3 size{scale * draw(dice_, 0.3, 0.9), scale * draw(dice_, 0.3, 0.9), scale * draw(dice_, 0.15, 0.8)};
+    const Vec3 size{scale * draw(dice_, 0.3, 0.9), scale * draw(dice_, 0.3, 0.9),
+                    scale * draw(dice_, 0.15, 0.8)};
     Made made;
     switch (dice_.below(3)) {
       case 0:
@@ -651,6 +652,56 @@ class Builder {
     fill(0, amount);
   }
 
+  // ---- the paper's laboratory ----
+
+ public:
+  void laboratory(int sequence, float time) {
+    constexpr float kDepth = 6, kWidth = 5, kHeight = 3;
+    world_.place = Place::room;
+    light_room(kDepth, kWidth, kHeight);
+    Look floor = floor_look(dice_);
+    floor.gloss = 0.12F, floor.roughness = 0.05F;
+    const Look walls = wall_look(dice_);
+    quad({-3, -kWidth / 2, 0}, {kDepth + 3, 0, 0}, {0, kWidth, 0}, floor).is_ground = true;
+    wall({kDepth, -kWidth / 2, 0}, {0, kWidth, 0}, kHeight, walls, {-1, 0});
+    wall({-3, -kWidth / 2, 0}, {kDepth + 3, 0, 0}, kHeight, walls, {0, 1});
+    wall({-3, kWidth / 2, 0}, {kDepth + 3, 0, 0}, kHeight, walls, {0, -1});
+    constexpr std::array<std::array<Vec2, 3>, kLaboratorySequences> kPlaces{{
+        {{{2.6F, 0.55F}, {2.2F, -0.1F}, {3, -0.8F}}},
+        {{{3.1F, -0.5F}, {2.5F, 0.7F}, {2, 0}}},
+        {{{2.75F, 0.18F}, {2.3F, 0}, {2.6F, -0.9F}}},
+        {{{2.4F, 0.4F}, {2.8F, -0.5F}, {}}},
+    }};
+    constexpr std::array kNames{"blue", "yellow", "red"};
+    constexpr std::array<Vec3, 3> kColours{
+        {{0.06F, 0.14F, 0.55F}, {0.75F, 0.55F, 0.04F}, {0.6F, 0.05F, 0.04F}}};
+    std::array<Mesh, 3> meshes{box({0.3F, 0.36F, 0.42F}, 0.02F), cylinder(0.17F, 0.4F, 40),
+                               blob({0.16F, 0.2F, 0.25F}, 0.1F, 3, dice_, 40)};
+    const auto& places = kPlaces.at(static_cast<std::size_t>(sequence));
+    for (std::size_t i = 0; i < (sequence == 3 ? 2U : 3U); ++i) {
+      Look look = random_look(dice_);
+      look.pattern = i == 0 ? Pattern::label : i == 1 ? Pattern::stripes : Pattern::weave;
+      const Vec3 colour = kColours.at(i);
+      look.colours = {colour, 0.45F * colour, mix(colour, {0.8F, 0.8F, 0.8F}, 0.35F), 0.7F * colour};
+      look.period = i == 2 ? Vec2{0.015F, 0.015F} : Vec2{0.2F, 0.18F};
+      settle(meshes.at(i));
+      Body body;
+      body.looks.fill(look);
+      body.own = meshes.at(i).points;
+      const auto [low, high] = bounds(meshes.at(i));
+      body.mesh = moved(turned(std::move(meshes.at(i)), kZ, draw(dice_, 0, 2 * kPi)),
+                        {places.at(i).x, places.at(i).y, 0});
+      body.id = static_cast<int>(i) + 1;
+      world_.scene.bodies.push_back(std::move(body));
+      world_.things.push_back({static_cast<int>(i) + 1, kNames.at(i), "free", high - low});
+    }
+    const float turn = 2 * kPi * time + static_cast<float>(sequence);
+    camera({time, 0.2F * std::sin(turn), 0.45F}, 0.1F * std::cos(turn), 8, 0.9F, 0.12F);
+    sensor();
+    world_.sensor.is_grey = false;
+  }
+
+ private:
   // ---- outdoors ----
 
   /// A large ground, a little uneven: a grid whose cells are as fine as they look.
@@ -841,6 +892,16 @@ class Builder {
 };
 
 }  // namespace
+
+World make_laboratory(int sequence, int frame) {
+  World world;
+  const WorldOptions options;
+  const Dice dice = Dice(1962).fork(static_cast<std::uint64_t>(sequence));
+  Builder(world, options, dice).laboratory(sequence, fraction(frame, kLaboratoryFrames));
+  Dice noise = dice.fork(1000 + static_cast<std::uint64_t>(frame));
+  world.scene.seed = noise.bits();
+  return world;
+}
 
 World make_world(const WorldOptions& options, int index) {
   World world;

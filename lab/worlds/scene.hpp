@@ -39,4 +39,11 @@ struct World {
 /// World number `index`: depends on the options and the index only.
 World make_world(const WorldOptions& options, int index);
 
+inline constexpr int kLaboratorySequences = 4, kLaboratoryFrames = 200;
+
+/// A frame of the paper's experiment made again: a robot drives through a laboratory with a mirroring floor, towards a
+/// blue, a yellow and a red object, in that order of ids. In sequence 2 the yellow one stands close in front of the blue
+/// one, as in the paper's image c; in sequence 3 there is no red one.
+World make_laboratory(int sequence, int frame);
+
 }  // namespace cairn::worlds

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/fields.hpp>
+#include <cairn/regions/object_hints.hpp>
 #include <cairn/stereo/disparity_map.hpp>
 #include <memory>
 #include <utility>
@@ -44,6 +45,12 @@ template <>
 struct NumbersOf<Rgb> {
   using Type = std::uint8_t;
   static constexpr int kCount = 3;
+};
+
+template <>
+struct NumbersOf<ObjectHint> {
+  using Type = std::int16_t;
+  static constexpr int kCount = 5;
 };
 
 /// The image's pixels as an array that keeps `owner` alive; None for an empty image.

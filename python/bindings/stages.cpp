@@ -69,13 +69,15 @@ struct ArgumentOf<View<const Rgb>> {
   }
   [[nodiscard]] View<const Rgb> get() const { return rgb; }
 };
-/// An image, and its noise: the last of the caller's arguments.
+/// An image, and its noise: the last number of the caller's arguments.
 template <>
 struct ArgumentOf<LeftImage> {
   LeftImage left;
   void take(CallArguments& given) {
     const auto& picture = given.value().cast<const LoadedImage&>();
-    left = {picture.gray(), picture.rgb(), py::object(given.values[given.values.size() - 1]).cast<float>()};
+    std::size_t last = given.values.size() - 1;
+    while (!py::isinstance<py::float_>(given.values[last])) --last;
+    left = {picture.gray(), picture.rgb(), py::object(given.values[last]).cast<float>()};
   }
   [[nodiscard]] const LeftImage& get() const { return left; }
 };
@@ -170,31 +172,23 @@ Numbers<std::int32_t> grown(const RegionGraph& graph, double mean_difference_max
   return {grow(graph, {mean_difference_max, deviation_max, sigma_min, min_region_area}, exec)};
 }
 
-Image<ObjectHint> hints(const Superpixels& superpixels, const LeftImage& left, const DisparityMap& disparity,
-                        View<const float> textured_px, const Ground& ground, const Background& background,
-                        const Exec& exec) {
-  return hint_objects(superpixels.edges, {left, disparity.disparity_px, textured_px, ground, background},
-                      exec);
+Image<ObjectHint> hints(const LeftImage& left, const DisparityMap& disparity, View<const float> textured_px,
+                        const Ground& ground, const Background& background, const Exec& exec) {
+  const Image<std::uint16_t> edges = superpixel_edges(left, exec);
+  return hint_objects(edges, {left, disparity.disparity_px, textured_px, ground, background}, exec);
 }
 
-Numbers<std::int16_t> hint_numbers(const Superpixels& superpixels, const LeftImage& left,
-                                   const DisparityMap& disparity, View<const float> textured_px,
-                                   const Ground& ground, const Background& background, const Exec& exec) {
-  const Image<ObjectHint> all = hints(superpixels, left, disparity, textured_px, ground, background, exec);
-  Numbers<std::int16_t> numbers{{}, {all.height(), all.width(), 5}};
-  for (int y = 0; y < all.height(); ++y) {
-    std::for_each_n(all.row(y), all.width(), [&](const ObjectHint& h) {
-      numbers.values.insert(numbers.values.end(), {h.object, h.outline, h.to_x, h.to_y, h.size});
-    });
-  }
-  return numbers;
+Superpixels superpixels(const LeftImage& left, View<const float> disparity_px, float /*of left*/,
+                        View<const ObjectHint> hints, const SuperpixelsConfig& config, const Exec& exec) {
+  return cut_superpixels(superpixel_edges(left, exec), hints, disparity_px, left.noise_sigma, config, exec);
 }
 
 MergeTree merge_tree(const Superpixels& superpixels, const LeftImage& left, const DisparityMap& disparity,
                      View<const float> textured_px, const Ground& ground, const Background& background,
                      const Exec& exec) {
-  const Image<ObjectHint> found = hints(superpixels, left, disparity, textured_px, ground, background, exec);
-  const Cues cues{left, disparity.disparity_px, textured_px, ground, background, found};
+  Cues cues{left, disparity.disparity_px, textured_px, ground, background};
+  const Image<ObjectHint> found = hint_objects(superpixels.edges, cues, exec);
+  cues.hints = found;
   return grow_merge_tree(superpixels, cues, merge_classifier(), exec);
 }
 
@@ -293,11 +287,9 @@ void bind_regions(py::module_& m) {
 }
 
 void bind_region_tree(py::module_& m) {
-  stage(m, "cut_superpixels",
-        py::overload_cast<const LeftImage&, View<const float>, const SuperpixelsConfig&, const Exec&>(
-            &cut_superpixels));
+  stage(m, "cut_superpixels", &superpixels);
   stage(m, "superpixel_regions", &superpixel_regions);
-  stage(m, "hint_objects", &hint_numbers);
+  stage(m, "hint_objects", &hints);
   stage(m, "grow_merge_tree", &merge_tree);
   stage(
       m, "choose_objects", +[](const MergeTree& tree, const ObjectsConfig& config, const Exec& exec) {

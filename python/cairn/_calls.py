@@ -83,6 +83,13 @@ def numbers(value, name, kind):
     return dense(array.astype(kind, copy=False) if fits else array, name, fits, expected)
 
 
+def hints(value, name):
+    expected = "an array (rows, columns, 5) of int16, from hint_objects()"
+    array = array_like(value, name, expected)
+    fits = array.ndim == 3 and array.shape[2] == 5 and array.dtype == np.int16 and array.size > 0
+    return dense(array, name, fits, expected)
+
+
 def image(value, name, exec, bgr):
     expected = "an image: an array (height, width) or (height, width, 3) of uint8"
     array = array_like(value, name, expected)
@@ -163,6 +170,8 @@ def converted(value, name, kind, exec, bgr):
     if kind == "NumbersLike":  # grey levels, or disparities in 1/16 px
         is_16 = isinstance(value, np.ndarray) and value.dtype == np.int16
         return numbers(value, name, "int16") if is_16 else image(value, name, exec, bgr)
+    if kind == "HintsLike":
+        return None if value is None else hints(value, name)
     if kind == "MaskLike":
         return None if value is None else numbers(value, name, "uint8")
     if kind in ("FloatsLike", "LabelsLike") or outer == "NDArray":
@@ -193,7 +202,8 @@ def size_of(parameter, value):
     """(height, width) of a value with one entry per pixel; () for others, and for those that the library compares."""
     arrays = [getattr(value, part, None) for part in ("labels", "disparity_px", "best")]
     value = next((array for array in arrays if isinstance(array, np.ndarray)), value)
-    is_other = "MatrixLike" in parameter.annotation or parameter.annotation == "Optional[DisparityLike]"
+    is_other = "MatrixLike" in parameter.annotation or parameter.annotation == "Optional[DisparityLike]" \
+        or parameter.annotation == "HintsLike"  # has an entry per cell
     is_image = isinstance(value, (np.ndarray, _cairn.Picture)) and not is_other
     return value.shape[:2] if is_image and len(value.shape) > 1 else ()
 

@@ -82,7 +82,6 @@ def test_frames_are_folders_with_true_objects(tmp_path):
 
 
 def test_numbers_are_formatted():
-    assert fit.runs_of([1, 2, 3, 4, 6, 8, 9]) == "1 to 4, 6, 8 to 9"
     assert fit.share_with_interval(0, 0) == "–"
     assert fit.share_with_interval(8, 10) == "0.80 (0.49 … 0.94)"
     assert fit.shares_of({"f1": 3.0, "f0": 1.0}, ["a", "b", "c"]) == [(0.75, "b"), (0.25, "a"), (0.0, "c")]
@@ -112,7 +111,7 @@ def test_the_ablation_fits_without_each_kind_of_cues(tmp_path, capsys):
     fake = types.SimpleNamespace(
         jobs=[None] * 6, folds=2, fit_regions=lambda: None, of_all=lambda i: ("same_thing_all", "whole_object_all"),
         fit_pairs=lambda: fitted.append(fake.without), run=lambda trees, *options, jobs: ROWS)
-    jobs = [(pathlib.Path("a"), "colour", "validate 320x240"), (pathlib.Path("b"), "grey", "validate rc_tabletop")]
+    jobs = [(pathlib.Path("a"), "colour", "yardstick indoors"), (pathlib.Path("b"), "grey", "rc_tabletop")]
     fit.ablation(fake, jobs, tmp_path / "ablation.md")
     assert fitted == [(), *fit.CUES.values()]
     page = (tmp_path / "ablation.md").read_text()
@@ -131,29 +130,124 @@ def test_a_hint_counts_as_a_cue_of_the_hints_only(tmp_path):
         assert values.tolist() == [kept]
 
 
-def test_clutter_is_a_separate_set(tmp_path):
-    for name in ("train_s300", "clutter_s2000", "train_s301"):
-        (tmp_path / "rooms" / name).mkdir(parents=True)
+def test_the_fit_needs_worlds_alone(tmp_path):
+    world = tmp_path / "worlds" / "world_00000"
+    room = tmp_path / "data/rendered/dev/320x240/dev_s01"
+    for folder in (world, room):
+        folder.mkdir(parents=True)
         for file in ("left.png", "objects.png"):
-            (tmp_path / "rooms" / name / file).touch()
-    sets = fit.fit_sets(tmp_path, tmp_path / "rooms")
-    assert [frame.name for frame in sets["more rooms"]] == ["train_s300", "train_s301"]
-    assert [frame.name for frame in sets["clutter"]] == ["clutter_s2000"]
-    assert "clutter" not in fit.fit_sets(tmp_path, None)
+            (folder / file).touch()
+    assert fit.fit_sets(tmp_path / "worlds", None) == {"worlds": [world]}
+    assert fit.fit_sets(tmp_path / "worlds", tmp_path / "data")["dev 320x240"] == [room]
+    assert fit.checked_sets(None, None) == {}
 
 
-def test_a_close_view_has_the_input_of_a_narrow_lens(monkeypatch):
+@pytest.fixture
+def hints(monkeypatch):
     monkeypatch.syspath_prepend(str(SOURCE / "lab"))
-    hints = load("fit_hints")
-    data = np.zeros((hints.CHANNELS, hints.HEIGHT, hints.WIDTH), np.float32)
-    inside = np.ones(data.shape[1:], bool)
-    inside[:, :40] = False
-    data[0, inside], data[3, inside], data[4, inside], data[5, inside] = 2, 0.25, 1, 0.5
-    hints.see_closer(data, 2.0, inside)
-    assert np.allclose(data[0][inside], 0)  # as bright as the crop's mean
-    assert np.allclose(data[3][inside], 1)  # the nearest thing that is seen
-    assert np.allclose(data[5][inside], 1)  # twice the disparity
-    assert data[10, 0, 80] == -1 and (data[:, ~inside] == 0).all()
+    return load("fit_hints")
+
+
+def store(hints, folder, ids):
+    """Two frames, in colour and in grey, with the objects `ids`: (id, columns) of a band in the middle."""
+    cells = np.zeros((4, hints.CHANNELS, hints.HEIGHT, hints.WIDTH), np.int16)
+    cells[:, 4] = hints.UNIT
+    cells[::2, 11] = hints.UNIT
+    truth = np.zeros((4, hints.HEIGHT, hints.WIDTH), np.uint8)
+    for number, columns in ids:
+        truth[:, 40:80, columns] = number
+    np.save(folder / "cells.npy", cells)
+    np.save(folder / "truth.npy", truth)
+
+
+def test_every_frame_comes_once_in_a_round(hints):
+    sampler = types.SimpleNamespace(frames=range(60))
+    half = hints.BATCH // 2
+    drawn = np.concatenate([hints.Sampler.numbers(sampler, step) for step in range(60 // half)])
+    assert sorted(drawn) == list(range(120))
+    first = hints.Sampler.numbers(sampler, 0)
+    assert (first[:half] % 2 == 0).all() and (first[half:] % 2 == 1).all()  # in colour, in grey
+    assert (hints.Sampler.numbers(sampler, 1000) == hints.Sampler.numbers(sampler, 1000)).all()
+
+
+def test_targets_of_the_network(hints, tmp_path):
+    torch = pytest.importorskip("torch")
+    store(hints, tmp_path, [(3, slice(60, 80)), (9, slice(80, 90))])
+    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")))
+    ids = torch.from_numpy(np.load(tmp_path / "truth.npy")[:1].astype(np.int64)).repeat(hints.BATCH, 1, 1)
+    ids[:, 0, 0] = hints.DONT_CARE
+    targets = sampler.targets(ids)[0].numpy()
+    assert targets[0].sum() == 40 * 30 and targets[6].sum() == hints.HEIGHT * hints.WIDTH - 1
+    assert targets[1, 60, 79] == targets[1, 60, 80] == 1 and targets[1, 60, 70] == 0  # outlines, on both sides
+    assert targets[1, 0, 0] == targets[1, 0, 1] == 0  # none around what is unknown
+    assert targets[2:6, 50, 65] == pytest.approx([69.5, 59.5, np.log2(800), np.sqrt(800)])
+
+
+def test_a_pasted_object_hides_what_is_behind_it(hints, tmp_path, monkeypatch):
+    torch = pytest.importorskip("torch")
+    monkeypatch.setattr(hints, "PASTES", 1)
+    store(hints, tmp_path, [(1, slice(60, 90))])
+    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")))
+    random = torch.Generator().manual_seed(1)
+    data = torch.zeros(hints.BATCH, hints.CHANNELS, hints.HEIGHT, hints.WIDTH)
+    data[:, 3], data[:, 4] = 0.5, 1
+    data[:, 0] = torch.arange(hints.BATCH)[:, None, None]  # brightness says whose cells they are
+    before = data.clone()
+    ids = torch.from_numpy(np.load(tmp_path / "truth.npy")[:1].astype(np.int64)).repeat(hints.BATCH, 1, 1)
+    sampler.paste(data, ids, 253, lambda low, high, shape=(hints.BATCH, 1, 1):
+                  low + (high - low) * torch.rand(*shape, generator=random))
+    pasted = ids == 253
+    assert pasted.any() and (data[:, 3][pasted] > 0.5).all()
+    assert (data[:, 0] != before[:, 0])[pasted].all()
+    unchanged = ~pasted[:, None].expand_as(data)
+    assert (data[unchanged] == before[unchanged]).all()
+
+
+def test_a_close_view_has_the_input_of_a_narrow_lens(hints, tmp_path):
+    torch = pytest.importorskip("torch")
+    store(hints, tmp_path, [])
+    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")))
+    data = torch.zeros(hints.BATCH, hints.CHANNELS, hints.HEIGHT, hints.WIDTH)
+    inside = torch.ones(hints.BATCH, hints.HEIGHT, hints.WIDTH, dtype=torch.bool)
+    inside[:, :, :40] = False
+    for channel, value in ((0, 2.0), (3, 0.25), (4, 1.0), (5, 0.5)):
+        data[:, channel][inside] = value
+    narrower = torch.zeros(hints.BATCH, 1, 1, dtype=torch.bool)
+    narrower[0] = True
+    before = data.clone()
+    sampler.see_closer(data, torch.full((hints.BATCH, 1, 1), 2.0), inside, narrower)
+    assert torch.allclose(data[0, 0][inside[0]], torch.tensor(0.0))  # as bright as the crop's mean
+    assert torch.allclose(data[0, 3][inside[0]], torch.tensor(1.0))  # the nearest thing that is seen
+    assert torch.allclose(data[0, 5][inside[0]], torch.tensor(1.0))  # twice the disparity
+    assert data[0, 10, 0, 80] == -1 and (data[0, :, ~inside[0]] == 0).all()
+    assert (data[1:] == before[1:]).all()
+
+
+def test_a_fit_that_was_stopped_goes_on_to_the_same_weights(hints, tmp_path, monkeypatch):
+    torch = pytest.importorskip("torch")
+    monkeypatch.setattr(hints, "BATCH", 4)
+    store(hints, tmp_path, [(1, slice(20, 70))])
+    frames = hints.Frames([tmp_path], 10, torch.device("cpu"))
+    whole = hints.fitted(frames, 4, 0.5, tmp_path / "whole")
+    monkeypatch.setattr(hints, "CHECKPOINT_SECONDS", -1)  # after every step
+
+    class Stopped(Exception):
+        pass
+
+    batch = hints.Sampler.batch
+
+    def until_stopped(sampler, step):
+        if step == 2:
+            raise Stopped
+        return batch(sampler, step)
+
+    monkeypatch.setattr(hints.Sampler, "batch", until_stopped)
+    with pytest.raises(Stopped):
+        hints.fitted(frames, 4, 0.5, tmp_path / "parts")
+    monkeypatch.setattr(hints.Sampler, "batch", batch)
+    resumed = hints.fitted(frames, 4, 0.5, tmp_path / "parts")
+    for one, other in zip(whole.state_dict().values(), resumed.state_dict().values()):
+        assert torch.equal(one, other)
 
 
 def test_the_fate_of_a_lost_object():
@@ -182,11 +276,8 @@ def test_the_fate_of_a_lost_object():
 @pytest.mark.parametrize("arguments, message", [
     (["--worse"], "fit: unknown argument '--worse'"),
     (["--worst", "12"], "fit: unknown argument '12'"),
-    (["nowhere"], "fit: there is no folder 'nowhere'"),
-    (["--distances", "--ablation"], "fit: unknown argument '--ablation' after --distances"),
-    (["--distances", "nowhere"], "fit: there is no folder 'nowhere'"),
-    (["--distances"], "fit: no data collection in '/nowhere'"),
-    (["--ablation"], "fit: no data collection in '/nowhere'"),
+    (["nowhere"], "fit: unknown argument 'nowhere'"),
+    (["--distances", "--ablation"], "fit: unknown argument '--ablation'"),
     (["--worst"], "fit: no data collection in '/nowhere'"),
 ])
 def test_dev_refuses_unknown_arguments(arguments, message):

@@ -60,9 +60,9 @@ def by_hierarchy(sample):
     disparity = cairn.reject_speckles(disparity)
     seen = cairn.floor_under_reflections(disparity, ground)
     background = cairn.fit_background(evidence, ground, rig)
-    superpixels = cairn.cut_superpixels(sample.left, seen, noise)
+    hints = cairn.hint_objects(sample.left, seen, evidence, ground, background, noise)
+    superpixels = cairn.cut_superpixels(sample.left, seen, noise, hints)
     tree = cairn.grow_merge_tree(superpixels, sample.left, seen, evidence, ground, background, noise)
-    hints = cairn.hint_objects(superpixels, sample.left, seen, evidence, ground, background, noise)
     assert hints.shape == (120, 160, 5) and hints.dtype == np.int16 and np.abs(hints[..., :2]).max() <= 96
     shows_object = hints[..., 0].repeat(2, 0).repeat(2, 1) > 0  # per pixel
     assert (shows_object & (sample.frame.objects_map > 0)).sum() > 0.8 * (sample.frame.objects_map > 0).sum()
@@ -191,6 +191,7 @@ def test_mismatched_arguments_are_refused(sample):
         lambda: cairn.select_textured(sample.left, frame.disparity_map, float("nan")),
         lambda: cairn.cut_superpixels(half, frame.disparity_map, 1),
         lambda: cairn.cut_superpixels(sample.left, frame.disparity_map, -1),
+        lambda: cairn.cut_superpixels(sample.left, frame.disparity_map, 1, np.zeros((120, 160, 4), np.int16)),
         lambda: cairn.superpixel_regions(superpixels, half),
         lambda: cairn.grow_merge_tree(other, sample.left, *grown, 1),
         lambda: cairn.grow_merge_tree(superpixels, half, *grown, 1),

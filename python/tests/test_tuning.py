@@ -47,7 +47,7 @@ def test_a_bad_option_is_repaired(frames):
     tuning = quick(frames)
     loss = tuning.tuned_on["loss"]
     assert loss["after"] < loss["before"] and tuning.kept_because is None and tuning["held_out"] is None
-    assert tuning.config["objects.min_area"] < 7
+    assert tuning.config["objects.min_area"] < 9
     assert tuning.found["objects.min_area"] == {"before": "10", "after": f"{tuning.config['objects.min_area']:g}"}
     assert tuning.options == 2 and "goal='objects'" in repr(tuning)
     back = pickle.loads(pickle.dumps(tuning))

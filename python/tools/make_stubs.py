@@ -37,6 +37,7 @@ ImageLike = NDArray[numpy.uint8]  # (H, W) or (H, W, 3)
 FloatsLike = NDArray[numpy.floating[Any]]  # (H, W), px
 DisparityLike = Union["DisparityMap", FloatsLike]
 MaskLike = Union[NDArray[numpy.uint8], NDArray[numpy.bool_], None]  # (H, W)
+HintsLike = Union[NDArray[numpy.int16], None]  # (rows, columns, 5)
 DisparitiesLike = FloatsLike  # each within ±2047, NaN = hole
 MatrixLike = NDArray[numpy.floating[Any]]  # square
 LabelsLike = NDArray[numpy.integer[Any]]  # (H, W)

@@ -64,7 +64,7 @@ TEST_F(Tune, RepairsABadOption) {
   const Json j = found();
   EXPECT_TRUE(j.at("kept_because").is_null()) << j;
   EXPECT_LT(j.at("tuned_on").at("loss").at("after"), j.at("tuned_on").at("loss").at("before")) << j;
-  EXPECT_LT(tuned().objects.min_area, 7.0F);
+  EXPECT_LT(tuned().objects.min_area, 9.0F);
 }
 
 TEST_F(Tune, ReportsTheLossThatEvaluateMeasuresWithItsConfig) {

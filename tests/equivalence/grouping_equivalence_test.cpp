@@ -98,7 +98,8 @@ struct Scene {
     return {{gray, rgb(), 1.25F}, disparity_px, textured_px, ground, background, hints};
   }
   [[nodiscard]] Superpixels superpixels(int count) const {
-    return cut_superpixels(LeftImage{gray, rgb(), kNoise}, disparity_px, {count}, {});
+    return cut_superpixels(superpixel_edges({gray, rgb(), kNoise}, {}), hints, disparity_px, kNoise, {count},
+                           {});
   }
 };
 
@@ -107,12 +108,14 @@ struct Scene {
 void expect_equal_to_definition(Size size, std::uint32_t seed, int count) {
   const Scene scene(size, seed);
   const Superpixels expected =
-      reference::cut_superpixels(scene.gray, scene.rgb(), scene.disparity_px, kNoise, count);
+      reference::cut_superpixels(scene.gray, scene.rgb(), scene.hints, scene.disparity_px, kNoise, count);
   for (const Target target : supported_targets()) {
     SCOPED_TRACE(text(size) + " " + std::to_string(seed) + " " + std::to_string(count) + " " +
                  std::string(name(target)));
-    const Superpixels found = cut_superpixels(LeftImage{scene.gray, scene.rgb(), kNoise}, scene.disparity_px,
-                                              {count}, Exec::with_threads(1, target));
+    const Exec exec = Exec::with_threads(1, target);
+    const LeftImage left{scene.gray, scene.rgb(), kNoise};
+    const Superpixels found =
+        cut_superpixels(superpixel_edges(left, exec), scene.hints, scene.disparity_px, kNoise, {count}, exec);
     EXPECT_EQ(found.count, expected.count);
     EXPECT_EQ(numbers(found.labels), numbers(expected.labels));
     EXPECT_EQ(numbers(found.edges), numbers(expected.edges));
@@ -144,7 +147,7 @@ TEST(CutSuperpixels, EqualsItsDefinitionIfMostBordersAreEqual) {
     for (const int count : {2, 9}) {
       const Superpixels found = cut_superpixels(LeftImage{gray, {}, kNoise}, holes, {count}, {});
       EXPECT_EQ(numbers(found.labels),
-                numbers(reference::cut_superpixels(gray, {}, holes, kNoise, count).labels))
+                numbers(reference::cut_superpixels(gray, {}, {}, holes, kNoise, count).labels))
           << seed << ' ' << count;
     }
   }
@@ -155,8 +158,10 @@ TEST(CutSuperpixels, GivesTheSameOnAnyNumberOfThreads) {
   const Superpixels expected = scene.superpixels(40);
   EXPECT_EQ(expected.count, 40);
   for (const int threads : {2, 3, 8}) {
-    const Superpixels found = cut_superpixels(LeftImage{scene.gray, scene.rgb(), kNoise}, scene.disparity_px,
-                                              {40}, Exec::with_threads(threads));
+    const Exec exec = Exec::with_threads(threads);
+    const LeftImage left{scene.gray, scene.rgb(), kNoise};
+    const Superpixels found =
+        cut_superpixels(superpixel_edges(left, exec), scene.hints, scene.disparity_px, kNoise, {40}, exec);
     EXPECT_EQ(numbers(found.labels), numbers(expected.labels));
     EXPECT_EQ(numbers(found.edges), numbers(expected.edges));
   }

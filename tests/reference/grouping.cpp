@@ -40,6 +40,45 @@ void for_each_pair_by_rows(Size size, Look look) {
   }
 }
 
+/// Where pixel i of n lies among `cells`: the cells around it, and how far it is from the first one's centre, in
+/// 1/256, rounded down.
+struct Place {
+  int first = 0;
+  int next = 0;
+  std::int64_t part = 0;
+};
+
+Place place_of(int i, int n, int cells) {
+  // Cell c has its centre at (c + 1/2) · n / cells, pixel i at i + 1/2.
+  const double at = (2.0 * i + 1) * cells / (2.0 * n) - 0.5;
+  const int before = static_cast<int>(std::floor(at));
+  // In whole numbers, as the rest may lie between two of them.
+  const std::int64_t rest = (2 * std::int64_t{i} + 1) * cells - n - 2 * std::int64_t{n} * before;
+  return {std::clamp(before, 0, cells - 1), std::clamp(before + 1, 0, cells - 1), rest * 256 / (2 * n)};
+}
+
+Image<std::uint16_t> with_outlines(View<const std::uint16_t> edges, View<const ObjectHint> hints) {
+  Image<std::uint16_t> stronger(edges.size());
+  for (int y = 0; y < edges.height(); ++y) {
+    for (int x = 0; x < edges.width(); ++x) {
+      std::int64_t share = 0;
+      if (!hints.empty()) {
+        const Place across = place_of(x, edges.width(), hints.width());
+        const Place down = place_of(y, edges.height(), hints.height());
+        const auto of_column = [&](int c) {
+          return outline_share(hints(c, down.first).outline) * (256 - down.part) +
+                 outline_share(hints(c, down.next).outline) * down.part;
+        };
+        share =
+            (of_column(across.first) * (256 - across.part) + of_column(across.next) * across.part) / 65536;
+      }
+      const std::int64_t edge = edges(x, y) + (3 * edges(x, y) + 32) * share / 256;
+      stronger(x, y) = static_cast<std::uint16_t>(std::min<std::int64_t>(edge, 65000));
+    }
+  }
+  return stronger;
+}
+
 Image<std::uint16_t> with_depth(View<const std::uint16_t> edges, View<const float> disparity_px,
                                 float noise_sigma) {
   Image<std::uint16_t> sum(edges.size());
@@ -517,12 +556,13 @@ class RegionGrower {
 
 }  // namespace
 
-Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
-                            float noise_sigma, int count) {
+Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const ObjectHint> hints,
+                            View<const float> disparity_px, float noise_sigma, int count) {
   Superpixels result;
   result.edges = reference::edge_strength(gray, rgb, 0.7F);
   std::vector<Image<std::uint16_t>> levels;
-  levels.push_back(with_depth(result.edges, disparity_px, noise_sigma));
+  const Image<std::uint16_t> stronger = with_outlines(result.edges, hints);
+  levels.push_back(with_depth(stronger, disparity_px, noise_sigma));
   while (levels.back().size().area() >= 1000 * std::int64_t{count}) levels.push_back(half_of(levels.back()));
   const Image<std::uint16_t>& edges = levels.back();
   Basins basins = reference::watershed(edges);

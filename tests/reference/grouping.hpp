@@ -12,8 +12,8 @@
 /// exhaustive search. Only for small images.
 namespace cairn::reference {
 
-Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const float> disparity_px,
-                            float noise_sigma, int count);
+Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<const ObjectHint> hints,
+                            View<const float> disparity_px, float noise_sigma, int count);
 
 /// A region as a set of superpixels.
 using Members = std::set<std::int32_t>;

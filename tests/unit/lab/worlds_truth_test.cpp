@@ -148,11 +148,11 @@ TEST(WorldTruth, IdsAreThoseOfTheThings) {
 
 TEST(Worlds, AreTheSameForTheSameNumberOnAnyThread) {
   WorldOptions options = small(0.3);
-  const WorldFrame first = make_frame(options, 7, 4);
+  const WorldFrame first = make_frame(make_world(options, 7), 4);
   std::array<WorldFrame, 2> others;
   {
     std::vector<std::jthread> threads;
-    for (WorldFrame& other : others) threads.emplace_back([&] { other = make_frame(options, 7, 4); });
+    for (WorldFrame& other : others) threads.emplace_back([&] { other = make_frame(make_world(options, 7), 4); });
   }
   const auto differing = [&](const Image<Rgb>& a, const Image<Rgb>& b) {
     int count = 0;
@@ -164,14 +164,30 @@ TEST(Worlds, AreTheSameForTheSameNumberOnAnyThread) {
     EXPECT_EQ(differing(first.left, other.left), 0);
     EXPECT_EQ(differing(first.right, other.right), 0);
   }
-  EXPECT_GT(differing(first.left, make_frame(options, 8, 4).left), 1000) << "another number";
+  EXPECT_GT(differing(first.left, make_frame(make_world(options, 8), 4).left), 1000) << "another number";
   options.use = Use::yardstick;
-  EXPECT_GT(differing(first.left, make_frame(options, 7, 4).left), 1000) << "another use";
+  EXPECT_GT(differing(first.left, make_frame(make_world(options, 7), 4).left), 1000) << "another use";
+}
+
+TEST(Laboratory, ShowsItsObjectsInEveryFrameFromAMovingRobot) {
+  for (int sequence = 0; sequence < kLaboratorySequences; ++sequence) {
+    std::vector<std::array<int, 4>> areas;
+    for (const int number : {0, 100, kLaboratoryFrames - 1}) {
+      const WorldFrame frame = make_frame(make_laboratory(sequence, number), 1);
+      std::array<int, 4> area{};
+      for (int y = 0; y < frame.left.height(); ++y)
+        for (int x = 0; x < frame.left.width(); ++x) ++area.at(frame.truth.ids(x, y));
+      for (std::size_t id = 1; id <= 3; ++id)
+        EXPECT_EQ(area.at(id) >= 200, sequence < 3 || id < 3) << sequence << ' ' << number << ' ' << id;
+      areas.push_back(area);
+    }
+    EXPECT_GT(areas[2][2], areas[0][2]) << "the robot comes nearer";
+  }
 }
 
 TEST(Worlds, AreWrittenAsADataSetOfFrames) {
   const support::TemporaryFolder folder;
-  const WorldFrame frame = make_frame(small(0), 3, 1);
+  const WorldFrame frame = make_frame(make_world(small(0), 3), 1);
   write_frame(frame, folder.path() / "world");
   const io::LoadedPair pair =
       io::load_pair(folder.path() / "world" / "left.png", folder.path() / "world" / "right.png");

@@ -801,7 +801,7 @@ TEST(ViewServer, ListsAllOptionsAndChangesNoneUnlessTunable) {
             first_config().segmentation.match.num_disparities);
   socket.send(set_message("objects.min_confidence", 0.9));
   EXPECT_TRUE(has(socket.read_op("status").at("message"), "--tunable"));
-  EXPECT_NEAR(socket.read_op("parameterValues").at("parameters").at(0).at("value").get<double>(), 0.3, 1e-6);
+  EXPECT_NEAR(socket.read_op("parameterValues").at("parameters").at(0).at("value").get<double>(), 0.35, 1e-6);
   const Json page =
       Json::parse(ask(served.port, request("/options.json", served.host() + served.cookie())).body);
   ASSERT_EQ(page.size(), all.size());

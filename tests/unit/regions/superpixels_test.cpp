@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <cairn/regions/object_hints.hpp>
 #include <cairn/regions/superpixels.hpp>
 #include <limits>
 #include <set>
@@ -65,6 +66,23 @@ TEST(Superpixels, ADisparityStepCutsAPlainImageAndHolesDoNot) {
   EXPECT_EQ(superpixels.edges(4, 1), 0) << "edges are of the picture alone";
   for (int y = 0; y < 3; ++y) std::fill_n(disparity.row(y) + 4, 4, kNaN);
   EXPECT_EQ(cut_superpixels(LeftImage{gray}, disparity, {}, {}).count, 1);
+}
+
+TEST(Superpixels, AnExpectedOutlineCutsAPlainImageAndAnUnlikelyOneDoesNot) {
+  const Image<Gray> gray(Size{16, 6}, Gray{100}, {});
+  const Image<float> holes(gray.size(), kNaN, {});
+  Image<ObjectHint> hints({8, 3}, ObjectHint{.outline = -96}, {});
+  const auto cut_by_hints = [&] {
+    return cut_superpixels(superpixel_edges(LeftImage{gray}, {}), hints, holes, 0, {}, {});
+  };
+  EXPECT_EQ(cut_by_hints().count, 1);
+  for (int y = 0; y < 3; ++y) hints(4, y).outline = 96;
+  const Superpixels superpixels = cut_by_hints();
+  EXPECT_EQ(superpixels.count, 2);
+  EXPECT_NE(superpixels.labels(4, 2), superpixels.labels(13, 2));
+  EXPECT_EQ(superpixels.edges(8, 2), 0) << "edges are of the picture alone";
+  for (int y = 0; y < 3; ++y) hints(4, y).outline = -32;
+  EXPECT_EQ(cut_by_hints().count, 1);
 }
 
 TEST(Superpixels, AreFewerThanCountInASmallImage) {

@@ -155,7 +155,7 @@ TEST(Neighbours, StayWithinTheLimitsAndOdd) {
 TEST(Neighbours, FromOffOrZeroThePresetsValuesAreTried) {
   EXPECT_EQ(neighbours(named("uniqueness.ratio"), "-1", 1.6), (Strings{"10"}));
   EXPECT_EQ(neighbours(named("uniqueness.ratio"), "5", 2), (Strings{"10", "2.5", "-1"}));
-  EXPECT_EQ(neighbours(named("objects.min_confidence"), "0", 1.6), (Strings{"0.3"}));
+  EXPECT_EQ(neighbours(named("objects.min_confidence"), "0", 1.6), (Strings{"0.35"}));
   EXPECT_EQ(neighbours(named("left_right.method"), "right_winner", 1.6), (Strings{"vote"}));
 }
 
