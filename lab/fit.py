@@ -329,7 +329,7 @@ def focal_times_baseline(frame):
 
 def shares_of(gains, names):
     """Share of each feature in the gain of all splits, largest first."""
-    total = sum(gains.values())
+    total = sum(gains.values()) or 1.0  # 0: nothing was worth a split
     shares = [(gains.get(f"f{i}", 0.0) / total, name) for i, name in enumerate(names)]
     return sorted(shares, key=lambda item: (-item[0], item[1]))
 
