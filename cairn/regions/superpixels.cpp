@@ -57,9 +57,10 @@ Image<std::uint16_t> with_outlines(View<const std::uint16_t> edges, View<const O
       const ObjectHint* const above = hints.row(down.first);
       const ObjectHint* const below = hints.row(down.next);
       int* const row = shares.row(y);
-      for (int c = 0; c < hints.width(); ++c)
+      for (int c = 0; c < hints.width(); ++c) {
         row[c] =
             outline_share(above[c].outline) * (256 - down.part) + outline_share(below[c].outline) * down.part;
+      }
       const std::uint16_t* const in = edges.row(y);
       std::uint16_t* const out = stronger.row(y);
       for (int x = 0; x < size.width; ++x) {

@@ -152,7 +152,8 @@ TEST(Worlds, AreTheSameForTheSameNumberOnAnyThread) {
   std::array<WorldFrame, 2> others;
   {
     std::vector<std::jthread> threads;
-    for (WorldFrame& other : others) threads.emplace_back([&] { other = make_frame(make_world(options, 7), 4); });
+    for (WorldFrame& other : others)
+      threads.emplace_back([&] { other = make_frame(make_world(options, 7), 4); });
   }
   const auto differing = [&](const Image<Rgb>& a, const Image<Rgb>& b) {
     int count = 0;
