@@ -36,6 +36,7 @@ BIAS_TREES, BIAS_DEPTH = 60, 4
 DOUBT = 0.08  # px, kDoubt of cairn/objects/refine_objects.cpp
 MOST_CORRECTION = 1  # px, kMaxBias there
 LARGEST_ERROR = 1.2  # px; larger ones are mistakes of the matching, which no feature predicts
+MIN_SCORE = "0.35"  # objects.min_confidence of the preset default
 SEED = 7
 MIDDLEBURY = ["2001/tsukuba", "2003/cones", "2003/teddy", "2005/Art", "2005/Laundry", "2005/Reindeer", "2006/Baby1",
               "2006/Lampshade1"]
@@ -437,7 +438,7 @@ def ablation(fitting, checked, path):
         fitting.without = words
         fitting.fit_pairs()
         fitting.fit_regions()
-        rows = fitting.run(fitting.of_all, "--min-score", "0.35", jobs=checked)
+        rows = fitting.run(fitting.of_all, "--min-score", MIN_SCORE, jobs=checked)
         cells = []
         for chosen in names.values():
             for colour in ("colour", "grey"):
@@ -482,7 +483,7 @@ def main():
     parser.add_argument("--distances-page", type=pathlib.Path,
                         help="where their report is written (docs/fitted_distances.md)")
     parser.add_argument("--ablation", type=pathlib.Path, help="where the ablation report is written")
-    parser.add_argument("--min-scores", default="0.35", help="thresholds for the report; the page shows the first")
+    parser.add_argument("--min-scores", default=MIN_SCORE, help="thresholds for the report; the page shows the first")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
     sets = fit_sets(arguments.worlds, arguments.data)

@@ -181,8 +181,7 @@ class Sampler:
         applied(10, (2 * self.down / HEIGHT - 1).expand_as(data[:, 10]))
 
     def paste(self, data, ids, number, uniform):
-        """Pastes an object of each sample's neighbour in front of what is there, half of the time onto another
-        object."""
+        """Pastes an object of each sample's neighbour in front of what is there, mostly onto another object."""
         import torch
 
         def neighbour(values):
@@ -414,9 +413,7 @@ def rounded(net, frames):
         whole = np.round(weight / unit[:, None, None, None]).astype(np.int64)
         whole_bias = np.round(bias / unit * of).astype(np.int64)
         side, stride = convolution.kernel_size[0], convolution.stride[0]
-        # Sums of 3×3 windows are computed times four: convolve_two().
-        greatest = (np.abs(whole).sum(axis=(1, 2, 3)) * GREATEST + np.abs(whole_bias)).max()
-        assert greatest * (4 if (side, stride) == (3, 1) else 1) < 2**31, "a sum may overflow"
+        assert (np.abs(whole).sum(axis=(1, 2, 3)) * GREATEST + np.abs(whole_bias)).max() < 2**31, "a sum may overflow"
         layers.append(((whole.shape[1], whole.shape[0], side, stride, -GREATEST if end else 0),
                        whole.transpose(2, 3, 1, 0).ravel(), whole_bias, (unit / of * into).astype(np.float32)))
     return layers

@@ -291,8 +291,7 @@ void work(const Job& of, float min_score, Files& files) {
   const View<const Gray> left = frame.images.left.gray;
   StageClock stage(exec);
   FrameInput in{{left, grey ? View<const Rgb>{} : frame.images.left.rgb.view()}, frame.images.right.gray};
-  RegionCandidates cut = superpixel_candidates(in, {frame.rig, config, exec},
-                                               files.inputs.is_open() ? nullptr : &network, stage);
+  RegionCandidates cut = superpixel_candidates(in, {frame.rig, config, exec}, network, stage);
   const Superpixels& superpixels = cut.superpixels;
   if (files.inputs.is_open()) {
     record_input(files.inputs, job, hint_input(superpixels.edges, cut.cues(in.left), exec), frame);

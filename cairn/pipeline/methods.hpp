@@ -51,8 +51,8 @@ Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Ru
                           const ObjectChoice& choose);
 /// The beginning of the first part …
 StereoMatch stereo_by_region_tree(FrameInput& in, const Run& run, StageClock& stage);
-/// … and the candidates up to the superpixels. Without a `network`, there are no hints: fitting adds its own.
-RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const HintNetwork* network,
+/// … and the candidates up to the superpixels; fitting brings its own `network`.
+RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const HintNetwork& network,
                                        StageClock& stage);
 
 }  // namespace cairn

@@ -27,7 +27,7 @@ StereoMatch stereo_by_region_tree(FrameInput& in, const Run& run, StageClock& st
   return found;
 }
 
-RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const HintNetwork* network,
+RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const HintNetwork& network,
                                        StageClock& stage) {
   const auto& [rig, config, exec] = run;
   RegionCandidates found{stereo_by_region_tree(in, run, stage)};
@@ -41,10 +41,8 @@ RegionCandidates superpixel_candidates(FrameInput& in, const Run& run, const Hin
 
   // The hints of the network, and superpixels along the outlines that it expects.
   Image<std::uint16_t> edges = stage("superpixel_edges", superpixel_edges(in.left, exec));
-  if (network) {
-    found.hints =
-        stage("hint_objects", hint_objects(hint_input(edges, found.cues(in.left), exec), *network, exec));
-  }
+  found.hints =
+      stage("hint_objects", hint_objects(hint_input(edges, found.cues(in.left), exec), network, exec));
   found.superpixels =
       stage("cut_superpixels", cut_superpixels(std::move(edges), found.hints, found.surface_disparity_px,
                                                in.left.noise_sigma, config.superpixels, exec));
@@ -59,7 +57,7 @@ Frame segment_by_region_tree(FrameInput in, const Run& run, const ObjectChoice& 
 RegionCandidates grow_candidates(FrameInput& in, const Run& run) {
   const Exec& exec = run.exec;
   StageClock stage(exec);
-  RegionCandidates found = superpixel_candidates(in, run, &hint_network(), stage);
+  RegionCandidates found = superpixel_candidates(in, run, hint_network(), stage);
 
   // The tree of merged regions, and concurrently the confidence of the disparities.
   Future<Image<float>> confidence(exec, [&](const Exec& concurrent) {

@@ -182,7 +182,7 @@ HWY_INLINE void transform_tile(const std::int16_t* const* rows, const std::ptrdi
     }
     for (int c = 0; c < 4; ++c) {
       transform(across[0][c], across[1][c], across[2][c], across[3][c], down);
-      for (int r = 0; r < 4; ++r) hn::StoreU(down[r], d, to + (4 * r + c) * kTiles * kMaxOutputs + i);
+      for (int r = 0; r < 4; ++r) hn::StoreU(down[r], d, to + (4 * r + c) * kTiles * kMaxTiledInputs + i);
     }
   }
 }
@@ -210,14 +210,14 @@ HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const C
 #pragma GCC unroll 12
       for (int t = 0; t < kTiles; ++t) {
         std::int32_t both = 0;
-        std::memcpy(&both, tiles + t * kMaxOutputs + i, sizeof both);
+        std::memcpy(&both, tiles + t * kMaxTiledInputs + i, sizeof both);
         const auto two = hn::BitCast(pairs, hn::Set(d, both));
 #pragma GCC unroll 12
         for (int v = 0; v < kCount; ++v)
           sums[t][v] = hn::ReorderWidenMulAccumulate(d, two, w[v], sums[t][v], others[t][v]);
       }
     }
-    tiles += kTiles * kMaxOutputs;
+    tiles += kTiles * kMaxTiledInputs;
 #pragma GCC unroll 12
     for (int t = 0; t < kTiles; ++t) {
 #pragma GCC unroll 12
@@ -249,13 +249,13 @@ HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const C
 
 inline void convolve_two(const std::int16_t* const* rows, const Convolution& by, int width,
                          std::int16_t* const* out) {
-  HWY_ALIGN std::int16_t tiles[kPlaces * kTiles * kMaxOutputs];
+  HWY_ALIGN std::int16_t tiles[kPlaces * kTiles * kMaxTiledInputs];
   for (int x = 0; x < width; x += 2 * kTiles) {
     for (int t = 0; t < kTiles; ++t) {
       // Where the width is odd, the last column has no neighbour, and no output depends on it.
       std::ptrdiff_t columns[4];
       for (int c = 0; c < 4; ++c) columns[c] = std::ptrdiff_t{std::min(x + 2 * t + c, width + 1)} * by.inputs;
-      transform_tile(rows, columns, by.inputs, tiles + t * kMaxOutputs);
+      transform_tile(rows, columns, by.inputs, tiles + t * kMaxTiledInputs);
     }
     int output = 0;
     for (; output + kTogether * kLanes <= by.outputs; output += kTogether * kLanes)

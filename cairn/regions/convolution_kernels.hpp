@@ -29,8 +29,11 @@ inline constexpr int kMaxOutputs = 96;
 /// The number of elements of a transformed tile of convolve_two().
 inline constexpr int kPlaces = 16;
 
-/// The limit of an output: no sum of products can then exceed 32 bits.
+/// The limit of an output: no sum of products can then exceed 32 bits …
 inline constexpr int kMaxActivation = 8191;
+/// … nor can four times a sum of convolve_two(), with at most that many inputs and weights of 8 bits.
+inline constexpr int kMaxTiledInputs = 56;
+static_assert(std::int64_t{4} * 9 * kMaxTiledInputs * 127 * kMaxActivation < INT32_MAX);
 
 /// Integer sums, one multiplication by a float, rounded to nearest: the same bits on every target.
 struct ConvolutionKernels {
@@ -39,7 +42,7 @@ struct ConvolutionKernels {
   /// (bias[o] + Σ weights · inputs) · scale[o], rounded, from `least` to kMaxActivation.
   void (*convolve)(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out);
   /// The same for two neighbouring rows of outputs, with fewer multiplications. `rows`: the four rows of inputs.
-  /// `out[1]` may be nullptr. Preconditions: side 3, stride 1, `inputs` a multiple of 8 up to kMaxOutputs.
+  /// `out[1]` may be nullptr. Preconditions: side 3, stride 1, `inputs` a multiple of 8 up to kMaxTiledInputs.
   void (*convolve_two)(const std::int16_t* const* rows, const Convolution& by, int width,
                        std::int16_t* const* out);
 };

@@ -106,7 +106,7 @@ enum Layer : std::size_t {
 
 /// Whether convolve_two() computes the layer.
 bool is_transformed(const HintLayer& l) {
-  return l.side == 3 && l.stride == 1 && l.inputs % 8 == 0 && l.inputs <= kernels::kMaxOutputs;
+  return l.side == 3 && l.stride == 1 && l.inputs % 8 == 0 && l.inputs <= kernels::kMaxTiledInputs;
 }
 
 std::size_t count_of_transformed(std::span<const HintLayer> layers) {

@@ -315,16 +315,21 @@ class Builder {
     if (share_of_image(footprint, bottom, top) > kLargest) return false;
     if (table_ && bottom == 0 && !is_inside(footprint, *table_)) return false;
     if (world_.things.size() >= 250) return false;
+    stand(made, at, yaw, bottom, how);
+    standing_.push_back(
+        {footprint, bottom, top, world_.scene.bodies.size() - 1, static_cast<int>(world_.things.size())});
+    return true;
+  }
+  void stand(const Made& made, Vec2 at, float yaw, float bottom, const std::string& how) {
     const int id = static_cast<int>(world_.things.size()) + 1;
+    const auto [low, high] = bounds(made.mesh);
     Body body;
     body.looks = made.looks;
     body.own = made.mesh.points;
     body.mesh = moved(turned(made.mesh, kZ, yaw), {at.x, at.y, bottom});
     body.id = id;
     world_.scene.bodies.push_back(std::move(body));
-    standing_.push_back({footprint, bottom, top, world_.scene.bodies.size() - 1, id});
     world_.things.push_back({id, made.kind, how, high - low});
-    return true;
   }
 
   /// The height of a thing about a point, if it is level there.
@@ -547,6 +552,15 @@ class Builder {
     }
   }
 
+  /// The ground and three walls, from behind the camera on along x.
+  void enclose(float depth, float width, float height, const Look& floor, const Look& front,
+               const Look& walls) {
+    quad({-3, -width / 2, 0}, {depth + 3, 0, 0}, {0, width, 0}, floor).is_ground = true;
+    wall({depth, -width / 2, 0}, {0, width, 0}, height, front, {-1, 0});
+    wall({-3, -width / 2, 0}, {depth + 3, 0, 0}, height, walls, {0, 1});
+    wall({-3, width / 2, 0}, {depth + 3, 0, 0}, height, walls, {0, -1});
+  }
+
   void room() {
     const bool is_corridor = world_.place == Place::corridor, is_clutter = world_.place == Place::clutter;
     const float height = draw(dice_, 2.3, 3.6);
@@ -556,11 +570,8 @@ class Builder {
     light_room(depth, width, height);
     const Look floor = floor_look(dice_), walls = wall_look(dice_);
     floor_like_ = floor;
-    quad({-3, -width / 2, 0}, {depth + 3, 0, 0}, {0, width, 0}, floor).is_ground = true;
     const Look front = dice_.chance(0.7) ? walls : wall_look(dice_);
-    wall({depth, -width / 2, 0}, {0, width, 0}, height, front, {-1, 0});
-    wall({-3, -width / 2, 0}, {depth + 3, 0, 0}, height, walls, {0, 1});
-    wall({-3, width / 2, 0}, {depth + 3, 0, 0}, height, walls, {0, -1});
+    enclose(depth, width, height, floor, front, walls);
     Look ceiling;
     ceiling.colours.fill({0.8F, 0.8F, 0.78F});
     quad({-3, -width / 2, height}, {depth + 3, 0, 0}, {0, width, 0}, ceiling);
@@ -662,10 +673,7 @@ class Builder {
     Look floor = floor_look(dice_);
     floor.gloss = 0.12F, floor.roughness = 0.05F;
     const Look walls = wall_look(dice_);
-    quad({-3, -kWidth / 2, 0}, {kDepth + 3, 0, 0}, {0, kWidth, 0}, floor).is_ground = true;
-    wall({kDepth, -kWidth / 2, 0}, {0, kWidth, 0}, kHeight, walls, {-1, 0});
-    wall({-3, -kWidth / 2, 0}, {kDepth + 3, 0, 0}, kHeight, walls, {0, 1});
-    wall({-3, kWidth / 2, 0}, {kDepth + 3, 0, 0}, kHeight, walls, {0, -1});
+    enclose(kDepth, kWidth, kHeight, floor, walls, walls);
     constexpr std::array<std::array<Vec2, 3>, kLaboratorySequences> kPlaces{{
         {{{2.6F, 0.55F}, {2.2F, -0.1F}, {3, -0.8F}}},
         {{{3.1F, -0.5F}, {2.5F, 0.7F}, {2, 0}}},
@@ -685,15 +693,9 @@ class Builder {
       look.colours = {colour, 0.45F * colour, mix(colour, {0.8F, 0.8F, 0.8F}, 0.35F), 0.7F * colour};
       look.period = i == 2 ? Vec2{0.015F, 0.015F} : Vec2{0.2F, 0.18F};
       settle(meshes.at(i));
-      Body body;
-      body.looks.fill(look);
-      body.own = meshes.at(i).points;
-      const auto [low, high] = bounds(meshes.at(i));
-      body.mesh = moved(turned(std::move(meshes.at(i)), kZ, draw(dice_, 0, 2 * kPi)),
-                        {places.at(i).x, places.at(i).y, 0});
-      body.id = static_cast<int>(i) + 1;
-      world_.scene.bodies.push_back(std::move(body));
-      world_.things.push_back({static_cast<int>(i) + 1, kNames.at(i), "free", high - low});
+      Made made{std::move(meshes.at(i)), {}, kNames.at(i)};
+      made.looks.fill(look);
+      stand(made, places.at(i), draw(dice_, 0, 2 * kPi), 0, "free");
     }
     const float turn = 2 * kPi * time + static_cast<float>(sequence);
     camera({time, 0.2F * std::sin(turn), 0.45F}, 0.1F * std::cos(turn), 8, 0.9F, 0.12F);

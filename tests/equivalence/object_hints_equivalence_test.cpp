@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cairn/core/target.hpp>
+#include <cairn/regions/convolution_kernels.hpp>
 #include <cmath>
 #include <random>
 
@@ -20,12 +21,12 @@ using reference::HintNumbers;
 
 /// Numbers of outputs that exercise all vector paths. Few weights are large, so that outputs neither vanish
 /// nor all saturate.
-HintNumbers random_numbers(std::uint32_t seed, int least_channels = 8) {
+HintNumbers random_numbers(std::uint32_t seed, int least_channels = 8, int most_channels = 48) {
   std::mt19937 random(seed);
   const auto from = [&random](int least, int most) {
     return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
   };
-  const auto channels = [&] { return 8 * from(least_channels / 8, 6); };
+  const auto channels = [&] { return 8 * from(least_channels / 8, most_channels / 8); };
   const int half = channels();
   const int quarter = channels();
   const int eighth = channels();
@@ -162,6 +163,19 @@ TEST(HintObjects, EqualTheirDefinitionOnEveryTarget) {
   }
 }
 
+TEST(HintObjects, OfAWideNetworkEqualTheirDefinitionOnEveryTarget) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const HintNumbers numbers = random_numbers(seed, 40, kernels::kMaxOutputs);
+    const Image<std::int16_t> input = random_input({24, 16}, seed);
+    const Image<ObjectHint> expected = reference::hint_objects(input, numbers);
+    EXPECT_GT(count_of_values(expected), 5) << "says something";
+    for (const Target target : supported_targets()) {
+      SCOPED_TRACE(name(target));
+      expect_equal(hint_objects(input.clone(), numbers.network(), on(target)), expected);
+    }
+  }
+}
+
 TEST(HintObjects, DoNotOverflowWithTheLargestInputs) {
   HintNumbers numbers = random_numbers(5);
   for (std::int8_t& weight : numbers.weights) weight = weight < 0 ? -127 : 127;
@@ -173,14 +187,17 @@ TEST(HintObjects, DoNotOverflowWithTheLargestInputs) {
 }
 
 TEST(HintObjects, DoNotOverflowWithTheLargestSums) {
-  HintNumbers numbers = random_numbers(6, 48);
-  std::fill(numbers.weights.begin(), numbers.weights.end(), std::int8_t{127});
-  std::fill(numbers.scale.begin(), numbers.scale.end(), 1.0F);
-  std::fill(numbers.scale.end() - 24, numbers.scale.end(), 1e-6F);  // estimates that are not all limited
-  const Image<std::int16_t> input = random_input({32, 32}, 6);
-  const Image<ObjectHint> expected = reference::hint_objects(input, numbers);
-  for (const Target target : supported_targets())
-    expect_equal(hint_objects(input.clone(), numbers.network(), on(target)), expected);
+  for (const int channels : {48, kernels::kMaxTiledInputs, kernels::kMaxOutputs}) {
+    SCOPED_TRACE(channels);
+    HintNumbers numbers = random_numbers(6, channels, channels);
+    std::fill(numbers.weights.begin(), numbers.weights.end(), std::int8_t{127});
+    std::fill(numbers.scale.begin(), numbers.scale.end(), 1.0F);
+    std::fill(numbers.scale.end() - 24, numbers.scale.end(), 1e-6F);  // estimates that are not all limited
+    const Image<std::int16_t> input = random_input({32, 32}, 6);
+    const Image<ObjectHint> expected = reference::hint_objects(input, numbers);
+    for (const Target target : supported_targets())
+      expect_equal(hint_objects(input.clone(), numbers.network(), on(target)), expected);
+  }
 }
 
 }  // namespace
