@@ -3,9 +3,9 @@
 //
 // Objects from common libraries, next to ours: OpenCV's semi-global matcher, points in metres, voxels, the
 // largest planes removed by PCL's RANSAC, Euclidean clusters of the rest.
-//   pcl_chain DATA [--threads N]
+//   pcl_chain DATA [--yardstick FOLDER] [--threads N]
 //   pcl_chain --search DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...
-// DATA is the folder with rendered/ and real/. The first form prints the tables of docs/comparison.md. The
+// DATA is the folder with rendered/ and real/, FOLDER that of `./dev worlds yardstick`. The first form prints the tables of docs/comparison.md. The
 // second chooses the chain's parameters on the fit set, by the search that chose those of the preset `paper`
 // (lab/search_program.hpp). Times are processor times of one thread.
 #include <pcl/ModelCoefficients.h>
@@ -36,9 +36,9 @@
 #include <cairn/timing/clock.hpp>
 #include <cairn/timing/opencv_matchers.hpp>
 #include <cairn/timing/opencv_matrix.hpp>
-#include <search_program.hpp>
 #include "arguments.hpp"
 #include "markdown_table.hpp"
+#include "search_program.hpp"
 
 namespace {
 
@@ -282,7 +282,7 @@ void add_row(lab::MarkdownTable& table, const std::string& name, const std::vect
              text_of("%.2f", sum.phantoms_per_frame()), text_of("%.0f", median(times))});
 }
 
-void compare(const std::filesystem::path& data, int threads) {
+void compare(const std::filesystem::path& data, const std::filesystem::path& yardstick, int threads) {
   const auto show = [&](const std::string& title, const std::vector<lab::FrameSet>& sets) {
     lab::MarkdownTable table({"", "found 0.5, %", "found 0.75, %", "precision, %", "mean E, %", "median E, %",
                               "phantoms per frame", "ms"});
@@ -294,13 +294,17 @@ void compare(const std::filesystem::path& data, int threads) {
     std::printf("### %s\n\n%s\n", title.c_str(), table.text().c_str());
     std::fflush(stdout);
   };
+  const auto show_each = [&](std::vector<lab::FrameSet> sets) {
+    for (lab::FrameSet& set : sets) {
+      const std::string title = set.name;
+      std::vector<lab::FrameSet> alone;
+      alone.push_back(std::move(set));
+      show(title, alone);
+    }
+  };
   show("fit", lab::fit_sets(data));
-  for (lab::FrameSet& set : lab::validation_sets(data)) {
-    const std::string title = set.name;
-    std::vector<lab::FrameSet> alone;
-    alone.push_back(std::move(set));
-    show(title, alone);
-  }
+  show_each(lab::validation_sets(data));
+  show_each(lab::hard_sets(data, yardstick));
 }
 
 void run(std::vector<std::string> arguments) {
@@ -313,12 +317,20 @@ void run(std::vector<std::string> arguments) {
     return;
   }
   int threads = 1;
-  if (arguments.size() == 3 && arguments[1] == "--threads") {
-    threads = lab::positive_number(arguments[2]);
-    arguments.resize(1);
+  std::filesystem::path yardstick;
+  for (; arguments.size() >= 3; arguments.resize(arguments.size() - 2)) {
+    const std::string& option = arguments[arguments.size() - 2];
+    if (option == "--threads") {
+      threads = lab::positive_number(arguments.back());
+    } else if (option == "--yardstick") {
+      yardstick = arguments.back();
+    } else {
+      break;
+    }
   }
-  if (arguments.size() != 1) throw Error("expected DATA [--threads N], or --search DATA ...");
-  compare(arguments[0], threads);
+  if (arguments.size() != 1)
+    throw Error("expected DATA [--yardstick FOLDER] [--threads N], or --search DATA ...");
+  compare(arguments[0], yardstick, threads);
 }
 
 }  // namespace

@@ -123,6 +123,17 @@ std::vector<FrameSet> validation_sets(const fs::path& data) {
                      {"validate rc_tabletop", "real/validate/rc_tabletop"}});
 }
 
+std::vector<FrameSet> hard_sets(const fs::path& data, const fs::path& yardstick) {
+  std::vector<FrameSet> sets;
+  if (!yardstick.empty())
+    sets = load(yardstick, {{"yardstick indoors", "indoors"}, {"yardstick outdoors", "outdoors"}});
+  for (FrameSet& set : load(data, {{"validate_varied", "rendered/validate_varied/320x240"},
+                                   {"validate_models", "rendered/validate_models/320x240"},
+                                   {"validate_outdoor", "rendered/validate_outdoor/320x240"}}))
+    sets.push_back(std::move(set));
+  return sets;
+}
+
 void run_search(const SearchProgram& program, const std::vector<std::string>& arguments) {
   fs::path data;
   Values values = program.start;

@@ -21,6 +21,8 @@ struct FrameSet {
 std::vector<FrameSet> fit_sets(const std::filesystem::path& data);
 /// Frames for reporting only.
 std::vector<FrameSet> validation_sets(const std::filesystem::path& data);
+/// The yardstick, unless `yardstick` is empty, and the validation sets of kinds of things that no fit has.
+std::vector<FrameSet> hard_sets(const std::filesystem::path& data, const std::filesystem::path& yardstick);
 
 struct SearchProgram {
   std::string name;
