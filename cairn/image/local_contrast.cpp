@@ -30,6 +30,19 @@ void smooth_row(View<const Gray> image, int y, int margin, std::vector<std::int3
   std::fill(sums.end() - margin, sums.end(), sums[sums.size() - static_cast<std::size_t>(margin) - 1]);
 }
 
+/// The contrast of each value of a row, in a loop that compilers vectorise.
+void compare(const std::int32_t* row, const std::vector<std::int32_t>& sums,
+             const std::vector<std::int32_t>& squares, float* out) {
+  for (std::size_t x = 0; x < sums.size(); ++x) {
+    const auto mean = static_cast<float>(sums[x]) / kPixels;
+    // Exact in doubles, so the variance is never negative.
+    const double sum = sums[x];
+    const auto spread = static_cast<float>(double{kPixels} * squares[x] - sum * sum);
+    const float variance = spread / (kPixels * kPixels);
+    out[x] = (static_cast<float>(row[x]) - mean) / std::sqrt(variance + 2 * 81);
+  }
+}
+
 }  // namespace
 
 Image<float> local_contrast(View<const Gray> image, const Exec& exec) {
@@ -41,6 +54,8 @@ Image<float> local_contrast(View<const Gray> image, const Exec& exec) {
     std::vector<std::vector<std::int32_t>> rows(kContrastWindow, std::vector<std::int32_t>(padded));
     std::vector<std::int32_t> sums(padded);
     std::vector<std::int32_t> squares(padded);
+    std::vector<std::int32_t> window_sums(static_cast<std::size_t>(size.width));
+    std::vector<std::int32_t> window_squares(static_cast<std::size_t>(size.width));
     const auto place = [](int y) { return static_cast<std::size_t>((y + kRadius) % kContrastWindow); };
     const auto add = [&](int y, std::int32_t sign) {
       const auto& row = rows[place(y)];
@@ -56,27 +71,20 @@ Image<float> local_contrast(View<const Gray> image, const Exec& exec) {
     for (int y = first - kRadius; y < first + kRadius; ++y) fetch(y);
     for (int y = first; y < last; ++y) {
       fetch(y + kRadius);
-      std::int64_t sum = 0;
-      std::int64_t square = 0;
+      // Of the window's pixels: at most 169 · 9 · 255, and 169 · (9 · 255)².
+      std::int32_t sum = 0;
+      std::int32_t square = 0;
       for (std::size_t x = 0; x < kContrastWindow - 1; ++x) {
         sum += sums[x];
         square += squares[x];
       }
-      float* const out = contrast.row(y);
-      const auto& here = rows[place(y)];
-      for (int x = 0; x < size.width; ++x) {
-        const auto end = static_cast<std::size_t>(x + kContrastWindow - 1);
-        sum += sums[end];
-        square += squares[end];
-        // Sums over 9 pixels are exact integers, so the variance is never negative.
-        const auto mean = static_cast<float>(sum) / kPixels;
-        const auto spread = static_cast<float>(kContrastWindow * kContrastWindow * square - sum * sum);
-        const float variance = spread / (kPixels * kPixels);
-        const auto value = static_cast<float>(here[static_cast<std::size_t>(x + kRadius)]);
-        out[x] = (value - mean) / std::sqrt(variance + 2 * 81);
-        sum -= sums[end - (kContrastWindow - 1)];
-        square -= squares[end - (kContrastWindow - 1)];
+      for (std::size_t x = 0; x < window_sums.size(); ++x) {
+        window_sums[x] = sum += sums[x + kContrastWindow - 1];
+        window_squares[x] = square += squares[x + kContrastWindow - 1];
+        sum -= sums[x];
+        square -= squares[x];
       }
+      compare(&rows[place(y)][kRadius], window_sums, window_squares, contrast.row(y));
       add(y - kRadius, -1);
     }
   });

@@ -16,7 +16,7 @@ namespace cairn {
 struct ObjectHint;
 
 struct SuperpixelsConfig {
-  int count = 250;  // superpixels; more follow small objects, and take longer
+  int count = 150;  // superpixels; more follow small objects, and take longer
 };
 template <class V>
 void fields(SuperpixelsConfig& c, V&& v) {
@@ -40,7 +40,7 @@ constexpr int outline_share(int log_odds) {
 /// expects the outline of an object (four times as strong plus 8 grey levels where it is sure: see
 /// outline_share()), plus 2 grey levels per px of the largest disparity step to one of the four neighbours (at most 8, rounded to 1/4), so that
 /// depth separates surfaces of equal brightness; values below 1 + noise_sigma grey levels (rounded down to
-/// 1/4) are set to 0. While it has at least 1000 pixels per superpixel, it is halved: means of 2×2, rounded. Basins of
+/// 1/4) are set to 0. While it has at least 1600 pixels per superpixel, it is halved: means of 2×2, rounded. Basins of
 /// its watershed with less than 1/40 of the pixels of an average superpixel join the neighbour across their lowest
 /// pass, all at once. Then they are merged in pairs, in ascending order of
 ///

@@ -132,10 +132,10 @@ TEST(CutSuperpixels, EqualsItsDefinition) {
 
 TEST(CutSuperpixels, EqualsItsDefinitionIfCutAtHalfAndQuarterSize) {
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-    expect_equal_to_definition({64, 33}, seed, 2);
-    expect_equal_to_definition({95, 67}, seed, 6);
-    expect_equal_to_definition({97, 86}, seed, 2);
-    expect_equal_to_definition({131, 33}, seed, 1);
+    expect_equal_to_definition({64, 33}, seed, 1);
+    expect_equal_to_definition({95, 67}, seed, 3);
+    expect_equal_to_definition({97, 86}, seed, 1);  // at a quarter
+    expect_equal_to_definition({131, 33}, seed, 2);
   }
 }
 

@@ -563,7 +563,7 @@ Superpixels cut_superpixels(View<const Gray> gray, View<const Rgb> rgb, View<con
   std::vector<Image<std::uint16_t>> levels;
   const Image<std::uint16_t> stronger = with_outlines(result.edges, hints);
   levels.push_back(with_depth(stronger, disparity_px, noise_sigma));
-  while (levels.back().size().area() >= 1000 * std::int64_t{count}) levels.push_back(half_of(levels.back()));
+  while (levels.back().size().area() >= 1600 * std::int64_t{count}) levels.push_back(half_of(levels.back()));
   const Image<std::uint16_t>& edges = levels.back();
   Basins basins = reference::watershed(edges);
   join_small_basins(basins, edges, edges.size().area() / count / 40);

@@ -188,7 +188,7 @@ TEST(RestoringArms, AreTheKnownValuesOfOptionsThatDiffer) {
   const std::vector<OptionCandidate> candidates = restoring_candidates(config, known, kSize);
   EXPECT_EQ(candidates, (std::vector<OptionCandidate>{{"uniqueness.ratio", "-1", true},
                                                       {"background.max_walls", "3", true},
-                                                      {"superpixels.count", "250", true}}));
+                                                      {"superpixels.count", "150", true}}));
 }
 
 TEST(RestoringArms, RespectWhatTheUserKnowsOfTheScene) {
