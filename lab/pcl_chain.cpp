@@ -5,9 +5,9 @@
 // largest planes removed by PCL's RANSAC, Euclidean clusters of the rest.
 //   pcl_chain DATA [--yardstick FOLDER] [--threads N]
 //   pcl_chain --search DATA [--threads N] [--draws N] [--rounds N] [--report] [OPTION=VALUE]...
-// DATA is the folder with rendered/ and real/, FOLDER that of `./dev worlds yardstick`. The first form prints the tables of docs/comparison.md. The
-// second chooses the chain's parameters on the fit set, by the search that chose those of the preset `paper`
-// (lab/search_program.hpp). Times are processor times of one thread.
+// DATA is the folder with rendered/ and real/, FOLDER that of `./dev worlds yardstick`. The first form prints
+// the tables of docs/comparison.md. The second chooses the chain's parameters on the fit set, by the search that
+// chose those of the preset `paper` (lab/search_program.hpp). Times are processor times of one thread.
 #include <pcl/ModelCoefficients.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
@@ -28,6 +28,7 @@
 #include <numeric>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -263,7 +264,7 @@ std::string counted(int part, int of) {
          percent(of > 0 ? static_cast<double>(part) / of : NAN);
 }
 
-void add_row(lab::MarkdownTable& table, const std::string& name, const std::vector<lab::FrameSet>& sets,
+void add_row(lab::MarkdownTable& table, const std::string& name, std::span<const lab::FrameSet> sets,
              const Way& way, int threads) {
   std::vector<FrameObjects> objects;
   std::vector<double> times;
@@ -283,7 +284,7 @@ void add_row(lab::MarkdownTable& table, const std::string& name, const std::vect
 }
 
 void compare(const std::filesystem::path& data, const std::filesystem::path& yardstick, int threads) {
-  const auto show = [&](const std::string& title, const std::vector<lab::FrameSet>& sets) {
+  const auto show = [&](const std::string& title, std::span<const lab::FrameSet> sets) {
     lab::MarkdownTable table({"", "found 0.5, %", "found 0.75, %", "precision, %", "mean E, %", "median E, %",
                               "phantoms per frame", "ms"});
     add_row(table, "StereoSGBM and PCL, usual numbers", sets, chain(&ChainKnob::usual), threads);
@@ -294,13 +295,8 @@ void compare(const std::filesystem::path& data, const std::filesystem::path& yar
     std::printf("### %s\n\n%s\n", title.c_str(), table.text().c_str());
     std::fflush(stdout);
   };
-  const auto show_each = [&](std::vector<lab::FrameSet> sets) {
-    for (lab::FrameSet& set : sets) {
-      const std::string title = set.name;
-      std::vector<lab::FrameSet> alone;
-      alone.push_back(std::move(set));
-      show(title, alone);
-    }
+  const auto show_each = [&](const std::vector<lab::FrameSet>& sets) {
+    for (const lab::FrameSet& set : sets) show(set.name, {&set, 1});
   };
   show("fit", lab::fit_sets(data));
   show_each(lab::validation_sets(data));
