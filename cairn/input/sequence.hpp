@@ -33,6 +33,7 @@ struct SequenceFrame {
   std::optional<std::chrono::steady_clock::time_point> arrived = {};
   // ROS' name of the left camera's frame, from the image's header; empty where the source has none.
   std::string frame_id = {};
+  bool begins_round = false;  // the first frame of another round through files: nobody waits for it
 };
 
 /// The status of a camera; for files all counts are 0 and it is connected.

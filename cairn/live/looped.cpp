@@ -28,6 +28,7 @@ class LoopedSequence : public Sequence {
       if (frame) {
         shift_ns_ = last_.ns + kPause_ns - frame->stamp.ns;
         frame->after_gap = true;
+        frame->begins_round = true;
       }
     }
     if (!frame) return std::nullopt;

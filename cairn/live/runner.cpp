@@ -212,7 +212,7 @@ void Runner::wait_for_its_time(const input::SequenceFrame& pair) {
   }
   const Clock::time_point now = Clock::now();
   Clock::time_point due = now;
-  if (played_ && !was_paused && options_.pace > 0) {
+  if (played_ && !was_paused && !pair.begins_round && options_.pace > 0) {
     const double seconds = seconds_between(played_->first, pair.stamp) / options_.pace;
     due =
         played_->second + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));

@@ -111,7 +111,8 @@ FollowConfig config() {
   return all;
 }
 
-LiveSummary run(Camera& camera, const LiveOptions& options, Notebook& notebook, const Exec& exec = {}) {
+LiveSummary run(input::Sequence& camera, const LiveOptions& options, Notebook& notebook,
+                const Exec& exec = {}) {
   Runner runner(camera, "camera", {}, config(), options, exec);
   runner.add(notebook);
   return runner.run();
@@ -297,6 +298,15 @@ TEST(Runner, FilesArePlayedAtThePaceOfTheirStamps) {
   options.pace = 0.5;
   const LiveSummary summary = run(camera, options, notebook);
   EXPECT_GE(summary.seconds, 0.2);
+}
+
+TEST(Runner, DoesNotWaitBetweenRounds) {
+  const auto source = looped([] { return std::make_unique<Camera>(1, 0ms, false); });  // rounds are 2 s apart
+  Notebook notebook;
+  LiveOptions options;
+  options.every_frame = true;
+  options.is_ended = [&] { return notebook.count > 20; };
+  EXPECT_LT(run(*source, options, notebook).seconds, 20);
 }
 
 TEST(Runner, EndsAfterItsTimeAndOnRequest) {
