@@ -5,7 +5,7 @@
 
 fit_hints.py gather TOOL STORE FRAMES...: the inputs of the network and the truth for folders of frames, in colour and
 in grey, into the folder STORE.
-fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--width W] [--worlds N]: fits to such stores.
+fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--width W] [--worlds N] [--start FILE]: fits to such stores.
 
 For each cell of 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
 and the centre and size of its object. It is then quantised: weights to 8 bits per output channel, activations to
@@ -14,6 +14,7 @@ stopped goes on, to the same weights as one that was not. A graphics processor i
 last bits of the weights differ.
 """
 import argparse
+import ctypes
 import os
 import pathlib
 import time
@@ -29,10 +30,11 @@ CLOSE_UPS = 0.3  # share of the samples that simulate a narrower field of view
 PASTES = 0.35  # chance, taken twice, that an object of another frame is pasted
 WIDTH, HEIGHT = 160, 120  # cells of a frame
 CHANNELS = 12
-FIRST, SECOND, THIRD, LAST = 16, 40, 48, 32  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
+FIRST, SECOND, THIRD, LAST = 24, 64, 72, 48  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
+SHARED_ROOT = 24  # root of the size, in cells, of an object whose cells count as much as the background's
 UNIT = 64  # scale of the input
 DONT_CARE = 255
-GREATEST = 8191  # activation: kMaxActivation
+GREATEST = 4800  # activation: kMaxActivation
 # Outputs: log-odds of an object and of an outline, quantised to 1/16; offset to the centre in units of 16 cells,
 # quantised to 1/8 cell; log₂ of the size, quantised to 1/16.
 STEPS_PER_UNIT = [16, 16, 128, 128, 16]
@@ -139,17 +141,20 @@ class Sampler:
         x = torch.where(uniform(0, 1) < 0.5, WIDTH - x, x).floor().long()
         y = y.floor().long()
         inside = (x >= 0) & (x < WIDTH) & (y >= 0) & (y < HEIGHT)
-        which = torch.arange(BATCH, device=x.device)[:, None, None]
         x, y = x.clamp(0, WIDTH - 1), y.clamp(0, HEIGHT - 1)
-        data = cells[which, :, y, x].permute(0, 3, 1, 2).float() / UNIT
-        data *= inside[:, None]
-        ids = torch.where(inside, truth[which, y, x].long(), DONT_CARE)
+
+        def moved(frame, to_x, to_y):
+            return frame.index_select(-2, to_y[:, 0]).index_select(-1, to_x[0])
+
+        data = torch.stack([moved(frame, *to) for frame, *to in zip(cells, x, y)]).float()
+        data *= inside[:, None] / UNIT
+        ids = torch.stack([moved(frame, *to) for frame, *to in zip(truth, x, y)]).long()
+        ids[~inside] = DONT_CARE
         self.see_closer(data, scale, inside, narrower)
         for number in (253, 254):
             self.paste(data, ids, number, uniform)
-        data[:, 0] = data[:, 0] * uniform(0.8, 1.25) + uniform(-0.2, 0.2)
         noise = torch.randn(BATCH, HEIGHT, WIDTH, generator=random, device=x.device)
-        data[:, 0] += noise * uniform(0, 0.06)
+        data[:, 0] = data[:, 0] * uniform(0.8, 1.25) + uniform(-0.2, 0.2) + noise * uniform(0, 0.06)
         data[:, 1:3] *= uniform(0.7, 1.4)[:, None]
         data[:, [3, 7]] *= uniform(0.85, 1.15)[:, None]
         data[:, 5:7] *= uniform(0.8, 1.25)[:, None]
@@ -159,78 +164,90 @@ class Sampler:
         data[:, 6] *= (uniform(0, 1) >= 0.1).float()  # no background
         return data.contiguous(memory_format=torch.channels_last), self.targets(ids)
 
-    def see_closer(self, data, scale, inside, narrower):
+    def see_closer(self, all_data, scale, inside, narrower):
         """A crop as a camera with a narrower field of view would see it; recomputes the inputs that hint_input()
         normalises by the image."""
         import torch
 
-        def applied(to, new):
-            data[:, to] = torch.where(narrower & inside, new, data[:, to])
-
+        chosen = narrower[:, 0, 0].nonzero()[:, 0]
+        if len(chosen) == 0:
+            return
+        data, inside = all_data[chosen], inside[chosen]
         count = inside.sum((1, 2), keepdim=True).clamp(min=1)
         mean = (data[:, 0] * inside).sum((1, 2), keepdim=True) / count
         spread = (((data[:, 0] - mean) ** 2 * inside).sum((1, 2), keepdim=True) / count).sqrt()
-        applied(0, ((data[:, 0] - mean) / (spread + 0.1)).clamp(-4, 4))
-        matched = inside & (data[:, 4] > 0)
-        nearest = torch.where(matched, data[:, 3], torch.nan).flatten(1).nanquantile(0.98, 1)
-        nearest = nearest.nan_to_num(1.0).clamp(min=0.02)[:, None, None]
-        for channel in (3, 7):
-            applied(channel, (data[:, channel] / nearest).clamp(max=2))
-        for channel in (5, 6):
-            applied(channel, (data[:, channel] * scale).clamp(-1, 3))
-        applied(10, (2 * self.down / HEIGHT - 1).expand_as(data[:, 10]))
+        data[:, 0] = ((data[:, 0] - mean) / (spread + 0.1)).clamp(-4, 4)
+        nearest = torch.where(data[:, 4] > 0, data[:, 3], torch.nan).flatten(1).nanquantile(0.98, 1)
+        nearest = nearest.nan_to_num(1.0).clamp(min=0.02)[:, None, None, None]
+        data[:, [3, 7]] = (data[:, [3, 7]] / nearest).clamp(max=2)
+        data[:, 5:7] = (data[:, 5:7] * scale[chosen, None]).clamp(-1, 3)
+        data[:, 10] = 2 * self.down / HEIGHT - 1
+        all_data[chosen] = data * inside[:, None]
 
     def paste(self, data, ids, number, uniform):
-        """Pastes an object of each sample's neighbour in front of what is there, mostly onto another object."""
+        """Pastes an object of a sample's neighbour in front of what is there, mostly onto another object."""
         import torch
 
-        def neighbour(values):
-            return torch.cat([half.roll(1, 0) for half in values.split(BATCH // 2)])
-
         device = data.device
-        from_data, from_ids = neighbour(data), neighbour(ids)
-        counts = torch.zeros(BATCH, 256, device=device).scatter_add(
-            1, from_ids.flatten(1), torch.ones(BATCH, HEIGHT * WIDTH, device=device))
+        neighbour = torch.cat([half.roll(1) for half in torch.arange(BATCH, device=device).split(BATCH // 2)])
+        to = (uniform(0, 1)[:, 0, 0] < PASTES).nonzero()[:, 0]
+        if len(to) == 0:
+            return
+        from_ = neighbour[to]
+        from_ids, to_ids = ids[from_], ids[to]
+        counts = torch.zeros(len(to), 256, device=device).scatter_add(
+            1, from_ids.flatten(1), torch.ones(len(to), HEIGHT * WIDTH, device=device))
         fits = (counts > 16) & (counts < 0.15 * HEIGHT * WIDTH)
         fits[:, 0] = fits[:, DONT_CARE] = False
-        score, chosen = (fits * uniform(0.01, 1, (BATCH, 256))).max(1)
-        is_used = (score > 0)[:, None, None] & (uniform(0, 1) < PASTES)
-        mask = (from_ids == chosen[:, None, None]) & is_used
+        score, chosen = (fits * uniform(0.01, 1, fits.shape)).max(1)
+        mask = (from_ids == chosen[:, None, None]) & (score > 0)[:, None, None]
         area = mask.sum((1, 2), keepdim=True).clamp(min=1)
         centre_x = (mask * self.across).sum((1, 2), keepdim=True) / area
         centre_y = (mask * self.down).sum((1, 2), keepdim=True) / area
-        onto_object = uniform(0, 1) < 0.7
-        wanted = torch.where(onto_object, (ids > 0) & (ids < DONT_CARE), ids < DONT_CARE)
-        place = (wanted * uniform(0.01, 1, (BATCH, HEIGHT, WIDTH))).flatten(1).argmax(1)[:, None, None]
+        onto_object = uniform(0, 1, (len(to), 1, 1)) < 0.7
+        wanted = torch.where(onto_object, (to_ids > 0) & (to_ids < DONT_CARE), to_ids < DONT_CARE)
+        place = (wanted * uniform(0.01, 1, wanted.shape)).flatten(1).argmax(1)[:, None, None]
         reach = area.sqrt()
-        move_x = (place % WIDTH - centre_x + reach * uniform(-1, 1)).round().long()
-        move_y = (torch.div(place, WIDTH, rounding_mode="floor") - centre_y + reach * uniform(-0.5, 0.5)).round().long()
-        x, y = self.across.long() - move_x, self.down.long() - move_y
+        move_x = (place % WIDTH - centre_x + reach * uniform(-1, 1, reach.shape)).round().long()
+        move_y = (torch.div(place, WIDTH, rounding_mode="floor") - centre_y + reach * uniform(-0.5, 0.5, reach.shape)).round().long()
+        # From here on, lists of cells: the pasted ones.
+        sample, y, x = mask.nonzero().unbind(1)
+        from_y, from_x = y, x
+        y, x = y + move_y[sample, 0, 0], x + move_x[sample, 0, 0]
         is_there = (x >= 0) & (x < WIDTH) & (y >= 0) & (y < HEIGHT)
-        x, y = x.clamp(0, WIDTH - 1), y.clamp(0, HEIGHT - 1)
-        which = torch.arange(BATCH, device=device)[:, None, None]
-        mask = mask[which, y, x] & is_there & (ids < DONT_CARE)
-        new = from_data[which, :, y, x].permute(0, 3, 1, 2).clone()
-        has = mask & (new[:, 4] > 0)
+        is_there &= to_ids[sample, y.clamp(0, HEIGHT - 1), x.clamp(0, WIDTH - 1)] < DONT_CARE
+        sample, y, x, from_y, from_x = (v[is_there] for v in (sample, y, x, from_y, from_x))
+        new, old = data[from_[sample], :, from_y, from_x], data[to[sample], :, y, x]
+
+        def of_cells(values):
+            all_cells = torch.zeros(mask.shape, device=device)
+            all_cells[sample, y, x] = values
+            return all_cells
+
+        def total(values):
+            return of_cells(values).sum((1, 2))
+
         # Scaled to be in front of what it hides.
-        own = (new[:, 3] * has).sum((1, 2), keepdim=True) / has.sum((1, 2), keepdim=True).clamp(min=1)
-        behind = (data[:, 3] * mask).amax((1, 2), keepdim=True)
-        nearer = ((behind * uniform(1.02, 1.35) + 0.02) / own.clamp(min=0.02)).clamp(0.3, 3)
-        disparity = (new[:, 3] * nearer).clamp(0, 2)
+        has = (new[:, 4] > 0).float()
+        own = total(new[:, 3] * has) / total(has).clamp(min=1)
+        behind = of_cells(old[:, 3]).amax((1, 2))
+        nearer = ((behind * uniform(1.02, 1.35, behind.shape) + 0.02) / own.clamp(min=0.02)).clamp(0.3, 3)
+        disparity = (new[:, 3] * nearer[sample]).clamp(0, 2)
         # Quarters of a pixel per unit of channel 3, from the cells whose difference from the ground is not limited.
-        above = data[:, 3] - data[:, 7]
-        known = (data[:, 4] > 0) & (data[:, 7] > 0) & (data[:, 5].abs() < 0.95)
-        unit = (data[:, 5] * above * known).sum((1, 2), keepdim=True) / (above ** 2 * known).sum(
-            (1, 2), keepdim=True).clamp(min=1e-3)
-        new[:, 5] = torch.where((data[:, 7] > 0) & (new[:, 4] > 0), (unit * (disparity - data[:, 7])).clamp(-1, 3), 0.0)
-        background = unit * data[:, 3] - data[:, 6]
-        over = torch.where(data[:, 6] > 2.95, 3.0, (unit * disparity - background).clamp(-1, 3))
-        new[:, 6] = torch.where((data[:, 4] > 0) & (new[:, 4] > 0) & (unit > 0), over, new[:, 6])
+        whole = data[to]
+        above = whole[:, 3] - whole[:, 7]
+        known = (whole[:, 4] > 0) & (whole[:, 7] > 0) & (whole[:, 5].abs() < 0.95)
+        unit = (whole[:, 5] * above * known).sum((1, 2)) / (above ** 2 * known).sum((1, 2)).clamp(min=1e-3)
+        unit = unit[sample]
+        new[:, 5] = torch.where((old[:, 7] > 0) & (new[:, 4] > 0), (unit * (disparity - old[:, 7])).clamp(-1, 3), 0.0)
+        background = unit * old[:, 3] - old[:, 6]
+        over = torch.where(old[:, 6] > 2.95, 3.0, (unit * disparity - background).clamp(-1, 3))
+        new[:, 6] = torch.where((old[:, 4] > 0) & (new[:, 4] > 0) & (unit > 0), over, new[:, 6])
         new[:, 3] = disparity
         for kept in (7, 10, 11):
-            new[:, kept] = data[:, kept]
-        data.copy_(torch.where(mask[:, None], new, data))
-        ids.copy_(torch.where(mask, number, ids))
+            new[:, kept] = old[:, kept]
+        data[to[sample], :, y, x] = new
+        ids[to[sample], y, x] = number
 
     def targets(self, ids):
         """Per cell: object, outline, centre (2), log₂ of the size, root of the size, known."""
@@ -326,12 +343,14 @@ def loss_of(output, truth, down, across):
     y = (down + 16 * output[:, 3] - truth[:, 3]) / root
     middle = F.smooth_l1_loss(x, 0 * x, reduction="none", beta=0.1) + F.smooth_l1_loss(y, 0 * y, reduction="none", beta=0.1)
     size = F.smooth_l1_loss(output[:, 4], truth[:, 4], reduction="none", beta=0.3)
-    return torch.stack([shared(output[:, 0], objects, known),
+    # Small objects are the ones that are lost: a cell of theirs counts more.
+    share = torch.where(objects > 0, (SHARED_ROOT / root).clamp(0.5, 3), known)
+    return torch.stack([shared(output[:, 0], objects, known * share),
                         shared(output[:, 1], truth[:, 1], known, pos_weight=torch.tensor(2.0, device=output.device)),
                         (middle * weight).sum() / (weight.sum() + 1), 0.3 * (size * weight).sum() / (weight.sum() + 1)])
 
 
-def fitted(frames, steps, width, checkpoint):
+def fitted(frames, steps, width, checkpoint, start=None):
     """A network fitted to the frames; its weights are an exponential average over the last steps."""
     import torch
 
@@ -339,16 +358,19 @@ def fitted(frames, steps, width, checkpoint):
     torch.set_num_threads(2)  # sums depend on it
     device = frames.device
     net, mean = (network(width).to(device, memory_format=torch.channels_last) for _ in range(2))
+    if start:
+        net.load_state_dict(torch.load(start, map_location=device))
     mean.load_state_dict(net.state_dict())
     kept, new = ([v for v in one.state_dict().values() if v.dtype.is_floating_point] for one in (mean, net))
     sampler = Sampler(frames)
-    optimizer = torch.optim.AdamW(net.parameters(), RATE, weight_decay=DECAY)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, RATE, total_steps=steps, pct_start=0.15)
+    rate = RATE / 2 if start else RATE
+    optimizer = torch.optim.AdamW(net.parameters(), rate, weight_decay=DECAY)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, rate, total_steps=steps, pct_start=0.15)
     parts = {"net": net, "mean": mean, "optimizer": optimizer, "schedule": schedule}
     first = 0
     if checkpoint.exists():
         state = torch.load(checkpoint, map_location=device)
-        if (state["steps"], state["width"], state["frames"]) == (steps, width, len(frames)):
+        if (state["steps"], state["width"], state["frames"], state["start"]) == (steps, width, len(frames), str(start)):
             first = state["step"]
             for name, part in parts.items():
                 part.load_state_dict(state[name])
@@ -373,7 +395,7 @@ def fitted(frames, steps, width, checkpoint):
             saved = time.time()
             unfinished = checkpoint.with_suffix(".unfinished")
             torch.save({name: part.state_dict() for name, part in parts.items()}
-                       | {"step": step + 1, "steps": steps, "width": width, "frames": len(frames)}, unfinished)
+                       | {"step": step + 1, "steps": steps, "width": width, "frames": len(frames), "start": str(start)}, unfinished)
             unfinished.replace(checkpoint)
     return mean.cpu().eval()
 
@@ -389,7 +411,7 @@ def rounded(net, frames):
     # Summands need a common scale: the decoder's 1×1 layers use that of the encoder's.
     for small, like in ((10, 6), (12, 3), (14, 1)):
         seen[small] = seen[like] = max(seen[small], seen[like])
-    scales = [GREATEST / 3 / max(s, 1e-6) for s in seen]  # headroom: three times the largest activation seen
+    scales = [GREATEST / 2 / max(s, 1e-6) for s in seen]  # headroom: twice the largest activation seen
     source = {0: UNIT, 15: scales[14], 13: scales[12], 11: scales[10]}
     source |= {2: scales[1], 4: scales[3], 7: scales[6], 10: scales[9], 12: scales[11], 14: scales[13]}
     layers = []
@@ -435,14 +457,24 @@ def write_fitted(layers, path):
     fitted_files.write_network(path, [shape for shape, _, _, _ in layers], all_of(1), all_of(2), all_of(3))
 
 
+def keep_memory():
+    """Large arrays are not given back to the system in every step: that takes as long as the sums themselves."""
+    libc = ctypes.CDLL(None)
+    if hasattr(libc, "mallopt"):  # glibc: no mmap, no trimming, at least 512 MB more at a time
+        for option, value in ((-4, 0), (-1, 2**31 - 1), (-2, 2**29)):
+            libc.mallopt(option, value)
+
+
 def fit(arguments):
     import torch
 
+    keep_memory()
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     frames = Frames(arguments.stores, arguments.worlds, device)
     print(f"{len(frames)} frames, {arguments.steps} steps, on {device}", flush=True)
     arguments.work.mkdir(parents=True, exist_ok=True)
-    net = fitted(frames, arguments.steps, arguments.width, arguments.work / f"{arguments.name}.checkpoint")
+    net = fitted(frames, arguments.steps, arguments.width, arguments.work / f"{arguments.name}.checkpoint",
+                 arguments.start)
     torch.save(net.state_dict(), arguments.work / f"{arguments.name}.pt")
     layers = rounded(net, frames)
     write(layers, arguments.work / arguments.name)
@@ -461,8 +493,9 @@ def main():
     command.add_argument("stores", type=pathlib.Path, nargs="+")
     command.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
     command.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
-    command.add_argument("--steps", type=int, default=11000)
+    command.add_argument("--steps", type=int, default=22000)
     command.add_argument("--width", type=float, default=1.0, help="of all layers")
+    command.add_argument("--start", type=pathlib.Path, help="weights of an earlier fit (.pt) to go on from, at half the rate")
     command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
     command.add_argument("--name", default="hints", help="of the file in the work folder")
     arguments = parser.parse_args()

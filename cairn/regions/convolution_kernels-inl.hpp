@@ -145,7 +145,7 @@ inline void convolve(const std::int16_t* const* rows, const Convolution& by, int
 // of 2 × 2 outputs depends on 4 × 4 inputs. Both inputs and weights are transformed into 4 × 4 numbers, whose 16
 // products give the four sums; the sums themselves need 36. The transformed weights of HintNetwork are four times
 // those of the paper, hence integers, and the sums are divided by four without a remainder: the same bits.
-// A transformed input is a sum of four inputs, at most 4 · 8191, and just fits into 16 bits. Intermediate sums
+// A transformed input is a sum of four inputs, at most 4 · kMaxActivation, and fits into 16 bits. Intermediate sums
 // may wrap around; the final ones, four times those of the window, stay below 2³¹.
 
 using Activation = hn::CappedTag<std::int16_t, 8>;

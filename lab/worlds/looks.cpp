@@ -251,6 +251,30 @@ Vec3 albedo_at(const Look& look, Vec2 uv, Vec3 point) {
   return first;
 }
 
+/// Ellipses, rectangles and irregular spots, at most one in each square of a grid.
+Vec3 with_marks(const Look& look, Vec2 uv, Vec3 albedo) {
+  const Vec2 at{uv.x / look.marks_period, uv.y / look.marks_period};
+  const int x = cell(at.x), y = cell(at.y);
+  for (int j = y - 1; j <= y + 1; ++j) {
+    for (int i = x - 1; i <= x + 1; ++i) {
+      const std::uint32_t h = hash(i, j, 11, look.seed), more = hash(i, j, 12, look.seed);
+      if (share_of(h) >= look.marks) continue;
+      const float angle = 2 * kPi * share_of(more), radius = 0.08F + 0.4F * share_of(more, 8);
+      const float dx = at.x - static_cast<float>(i) - share_of(h, 8),
+                  dy = at.y - static_cast<float>(j) - share_of(h, 16);
+      const float u = (std::cos(angle) * dx + std::sin(angle) * dy) / radius,
+                  v = (std::cos(angle) * dy - std::sin(angle) * dx) / radius /
+                      (0.3F + 0.7F * share_of(more, 16));
+      const int shape = static_cast<int>(more >> 24U) % 3;
+      float r = shape == 0 ? std::max(std::abs(u), std::abs(v)) : std::sqrt(u * u + v * v);
+      if (shape == 1) r += 0.35F * noise({2 * u, 2 * v, 0}, more);
+      const float inside = r >= 1 ? 0 : look.marks_edge == 0 ? 1 : std::min(1.0F, (1 - r) / look.marks_edge);
+      albedo = mix(albedo, look.mark_colours[h >> 31U], inside);
+    }
+  }
+  return albedo;
+}
+
 void turn_pattern(Look& look, float angle) {
   look.turn = {std::cos(angle), std::sin(angle)};
 }
@@ -416,10 +440,22 @@ Look ground_look(Dice& dice) {
   return look;
 }
 
+void scatter_marks(Look& look, Dice& dice) {
+  look.marks = draw(dice, 0.1, 0.6);
+  look.marks_period = static_cast<float>(dice.log_uniform(0.08, 1));
+  look.marks_edge = dice.chance(0.5) ? 0 : draw(dice, 0.1, 1);
+  const float strength = dice.chance(0.5) ? 1 : draw(dice, 0.15, 0.6);
+  for (Vec3& colour : look.mark_colours) {
+    const Vec3 other = dice.chance(0.4) ? similar(dice, look.colours[0]) : random_colour(dice);
+    colour = mix(look.colours[0], other, strength);
+  }
+}
+
 Surface surface_at(const Look& look, Vec2 uv, Vec3 point) {
   Vec3 albedo = albedo_at(look, uv, point);
   if (look.wear > 0)
     albedo = (1 + look.wear * fractal(1 / look.wear_period * point, look.seed + 99, 5)) * albedo;
+  if (look.marks > 0) albedo = with_marks(look, uv, albedo);
   return {clamped(albedo), look.gloss, look.roughness};
 }
 

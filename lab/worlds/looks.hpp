@@ -49,9 +49,13 @@ struct Look {
   float grain = 0;          // of tiles: strength of the wood's grain
   float shift = 0;          // of tiles: by how much of a tile each row is shifted; > 1: at random
   float wear = 0;  // how much the brightness varies over the surface, at all scales below wear_period
-  float wear_period = 0.1F;  // metres
-  bool checker = false;      // of tiles: two colours
-  Vec2 turn{1, 0};           // cosine and sine of the pattern's direction
+  float wear_period = 0.1F;   // metres
+  bool checker = false;       // of tiles: two colours
+  float marks = 0;            // chance of a flat mark in a square of marks_period
+  float marks_period = 0.3F;  // metres
+  float marks_edge = 0;       // how soft their edges are: 0 … 1 of their radius
+  std::array<Vec3, 2> mark_colours{};
+  Vec2 turn{1, 0};  // cosine and sine of the pattern's direction
   Vec3 axis{0, 0, 1};
   std::uint32_t seed = 0;
   std::shared_ptr<const std::vector<std::array<std::uint8_t, 3>>>
@@ -62,6 +66,8 @@ struct Look {
 Look random_look(Dice& dice);
 Look floor_look(Dice& dice);
 Look wall_look(Dice& dice);
+/// Marks that are no objects: stickers, stains, spots of light or shadow, painted signs.
+void scatter_marks(Look& look, Dice& dice);
 /// Outdoors: asphalt, paving, gravel, lawn.
 Look ground_look(Dice& dice);
 

@@ -221,6 +221,12 @@ class Builder {
     return made;
   }
 
+  /// The yardstick is older than marks and stays as it is.
+  Look marked(Look look) {
+    if (options_.use == Use::fit && dice_.chance(0.5)) scatter_marks(look, dice_);
+    return look;
+  }
+
   void paint(Made& made) {
     const Look one = random_look(dice_);
     for (Look& look : made.looks) look = dice_.chance(0.5) ? one : random_look(dice_);
@@ -568,7 +574,7 @@ class Builder {
         is_corridor ? draw(dice_, 4, 12) : draw(dice_, 2.2, 7);  // from the camera's wall on, along x
     const float width = is_corridor ? draw(dice_, 1.4, 2.6) : draw(dice_, 2.5, 7);
     light_room(depth, width, height);
-    const Look floor = floor_look(dice_), walls = wall_look(dice_);
+    const Look floor = marked(floor_look(dice_)), walls = marked(wall_look(dice_));
     floor_like_ = floor;
     const Look front = dice_.chance(0.7) ? walls : wall_look(dice_);
     enclose(depth, width, height, floor, front, walls);
@@ -633,8 +639,8 @@ class Builder {
     const float below = draw(dice_, 0.5, 0.85);  // the room's floor
     const float w = draw(dice_, 0.8, 2.4), d = draw(dice_, 0.6, 1.4);
     light_room(2, 3, 2.2F);
-    const Look top = dice_.chance(0.4) ? random_look(dice_) : floor_look(dice_), floor = floor_look(dice_),
-               walls = wall_look(dice_);
+    const Look top = marked(dice_.chance(0.4) ? random_look(dice_) : floor_look(dice_)),
+               floor = floor_look(dice_), walls = wall_look(dice_);
     floor_like_ = top;
     quad({-4, -4, -below}, {9, 0, 0}, {0, 8, 0}, floor);
     const float back = d + (dice_.chance(0.4) ? 0.01F : draw(dice_, 0.2, 3));
@@ -797,7 +803,7 @@ class Builder {
       scene.lamps.push_back({unit({std::cos(turn), std::sin(turn), std::tan(high)}), 0,
                              level * draw(dice_, 0.9, 1.6) * Vec3{1, 0.95F, 0.86F}});
     }
-    const Look look = ground_look(dice_);
+    const Look look = marked(ground_look(dice_));
     floor_like_ = look;
     ground(look, dice_.chance(0.5) ? 0 : draw(dice_, 0.002, 0.02),
            dice_.chance(0.6) ? 0 : draw(dice_, -0.04, 0.06));
