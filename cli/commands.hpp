@@ -88,7 +88,8 @@ inline constexpr std::array kCommands{
             "cairn map show room.db\n"
             "cairn map check room.db\n"
             "cairn map export room.db --form geojson -o room.geojson\n"
-            "cairn map merge room.db corridor.db -o both.db\n"},
+            "cairn map merge room.db corridor.db -o both.db\n"
+            "cairn map merge room.db corridor.db -o both.db --at corridor=4.2,-1,90\n"},
     Command{"config", "show the options in force, with value, unit, range and meaning",
             "cairn config --preset paper\n"
             "cairn config --changed --set objects.min_confidence=0.5 > mine.yaml\n"},

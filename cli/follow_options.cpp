@@ -13,24 +13,18 @@
 #include "terminal.hpp"
 
 namespace cairn::cli {
-namespace {
-
-/// "X,Y,DEGREES" on the map's floor.
-std::optional<Pose> start_in_map(const std::string& text) {
-  if (text.empty()) return std::nullopt;
+std::optional<Pose> pose_on_floor(const std::string& text) {
   double x = 0;
   double y = 0;
   double degrees = 0;
   int used = 0;
   const int read = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &x, &y, &degrees, &used);
-  if (read != 3 || static_cast<std::size_t>(used) != text.size() || !std::isfinite(x + y + degrees))
-    throw Error("--start " + text + ": expected X,Y,DEGREES, e.g. 0,0,0 for where the map began");
+  const bool is_near = std::abs(x) <= 1e6 && std::abs(y) <= 1e6 && std::abs(degrees) <= 1e6;
+  if (read != 3 || static_cast<std::size_t>(used) != text.size() || !is_near) return std::nullopt;
   Pose pose = rotation_about({0, 0, degrees * std::numbers::pi / 180});
   pose.translation_m = {x, y, 0};
   return pose;
 }
-
-}  // namespace
 
 std::vector<std::string> SensorInput::given() const {
   std::vector<std::string> names;
@@ -67,7 +61,9 @@ live::SensorFiles sensor_files(const SensorInput& input, const input::Sequence& 
   if (!input.poses.empty() && !(input.odometry.empty() && input.imu.empty()))
     throw Error("--poses: already gives the motion, expected neither --odometry nor --imu");
   if (input.map_read_only && input.map.empty()) throw Error("--read-only: needs --map FILE.db");
-  const std::optional<Pose> start = start_in_map(input.start);
+  const std::optional<Pose> start = pose_on_floor(input.start);
+  if (!start && !input.start.empty())
+    throw Error("--start " + input.start + ": expected X,Y,DEGREES, e.g. 0,0,0 for where the map began");
   if (start && input.map.empty()) throw Error("--start: needs --map FILE.db");
   if (const auto names = input.given(); !source.rig() && !names.empty()) {
     throw Error(names.front() + ": needs metres, but " + source.name() +

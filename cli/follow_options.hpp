@@ -17,6 +17,9 @@ namespace cairn::cli {
 FollowConfig resolve_follow(const ConfigOptions& options,
                             std::optional<int> calibrated_disparities = std::nullopt,
                             KnownGround ground = {});
+/// Of "X,Y,DEGREES": metres, counterclockwise. nullopt if it is something else, or beyond 1e6.
+std::optional<Pose> pose_on_floor(const std::string& text);
+
 /// Files of other sensors, and the map.
 struct SensorInput {
   std::string odometry;

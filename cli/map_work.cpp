@@ -10,7 +10,9 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <numbers>
 
+#include "follow_options.hpp"
 #include "terminal.hpp"
 
 namespace cairn::cli {
@@ -91,29 +93,61 @@ bool are_copies(const MapFile& file, const MapFile& other) {
   return !file.map_id().empty() && file.map_id() == other.map_id();
 }
 
-/// Merges copies of one map by id and appearance, other maps by appearance and place.
-MapMerge merged_of(const LandmarkMap& map, const LandmarkMap& other, bool is_copy,
-                   const MapOptions& options) {
-  MapMerge merged = is_copy ? merge_copies(map, other, LandmarksConfig{})
-                            : merge(map, other, std::nullopt, LandmarksConfig{});
-  if (!merged.map_from_other) {
-    throw Error(options.other + ": matches no place in " + options.file + " (" +
-                choice_name(merged.refusal, kRecognitionRefusals) + "), expected " +
-                std::to_string(LandmarksConfig{}.relocation_pairs) + " common landmarks");
+/// The known poses of `others`.
+std::vector<std::optional<Pose>> places_of(const MapOptions& options) {
+  std::vector<std::optional<Pose>> places(options.others.size());
+  for (const std::string& text : options.places) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const std::optional<Pose> pose = pose_on_floor(text.substr(std::min(equals + 1, text.size())));
+    if (!pose) throw Error("--at " + text + ": expected NAME=X,Y,DEG");
+    std::vector<std::size_t> named;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (fs::path(options.others[i]).stem() == text.substr(0, equals)) named.push_back(i);
+    }
+    if (named.size() != 1)
+      throw Error("--at " + text + ": " + count_of(named.size(), "map") +
+                  " of that name after FILE, expected 1");
+    if (places[named[0]]) throw Error("--at " + text + ": the second pose of this map, expected one");
+    places[named[0]] = pose;
+  }
+  return places;
+}
+
+/// All maps in the frame of the first: copies of it by id and appearance, others where --at says, or by appearance and
+/// place. Throws Error if one finds no place.
+MapsMerge merged_of(const MapFile& file, const MapOptions& options) {
+  std::vector<std::optional<Pose>> places = places_of(options);
+  std::vector<MapFile> files;
+  std::vector<MapToMerge> others;
+  for (std::size_t i = 0; i < options.others.size(); ++i) {
+    files.push_back(MapFile::open(options.others[i], MapMode::read_only));
+    const bool is_copy = are_copies(file, files[i]);
+    if (is_copy && places[i])
+      throw Error("--at: " + options.others[i] + " is a copy of " + options.file + ", so its pose is known");
+    for (std::size_t j = 0; j < i && !is_copy; ++j) {
+      if (are_copies(files[i], files[j])) {
+        throw Error(options.others[i] + ": is a copy of " + options.others[j] +
+                    "; merge these two first, or what both saw would count twice");
+      }
+    }
+    others.push_back({files[i].load(), is_copy, places[i]});
+  }
+  MapsMerge merged = merge_all(file.load(), std::move(others), LandmarksConfig{});
+  for (std::size_t i = 0; i < merged.placed.size(); ++i) {
+    if (merged.placed[i].map_from_other) continue;
+    throw Error(options.others[i] + ": matches no place in " + options.file + " (" +
+                choice_name(merged.placed[i].refusal, kRecognitionRefusals) + "), expected common landmarks" +
+                (options.action == "merge" ? ", or --at" : ""));
   }
   return merged;
 }
 
-const std::string& second_of(const MapOptions& options) {
-  if (options.other.empty()) throw Error("map " + options.action + ": found no second map, expected OTHER");
-  return options.other;
-}
-
 int diff(const MapOptions& options) {
+  if (options.others.size() != 1)
+    throw Error("map diff: found " + count_of(options.others.size() + 1, "map") + ", expected 2");
   const MapFile file = MapFile::open(options.file, MapMode::read_only);
-  const MapFile other = MapFile::open(second_of(options), MapMode::read_only);
   const LandmarkMap map = file.load();
-  const LandmarkMap second = other.load();
+  const LandmarkMap second = MapFile::open(options.others[0], MapMode::read_only).load();
   const auto moved_by = [](const Landmark& a, Point3 b) {
     return std::hypot(b.x - a.position_m.x, b.y - a.position_m.y);
   };
@@ -125,12 +159,12 @@ int diff(const MapOptions& options) {
                by > 0 ? text_of("%.2f", by) : ""});
     ++changes;
   };
-  const MapMerge merged = merged_of(map, second, are_copies(file, other), options);
-  const Pose pose = *merged.map_from_other;
+  const PlacedMap placed = merged_of(file, options).placed[0];
+  const Pose pose = *placed.map_from_other;
   std::vector<LandmarkId> met;
   for (const Landmark& theirs : second.list) {
     const Landmark* ours = nullptr;
-    for (const LandmarkPair& pair : merged.pairs) {
+    for (const LandmarkPair& pair : placed.pairs) {
       if (number(pair.track) == number(theirs.id)) ours = find(map, pair.landmark);
     }
     const Point3 at = pose(theirs.position_m);
@@ -156,11 +190,11 @@ int diff(const MapOptions& options) {
 }
 
 int merge_files(const MapOptions& options) {
+  if (options.others.empty()) throw Error("map merge: found one map, expected OTHER");
   const MapFile file = MapFile::open(options.file, MapMode::read_only);
-  const MapFile other = MapFile::open(second_of(options), MapMode::read_only);
   if (options.output.empty()) throw Error("map merge: found no output file, expected -o FILE");
   if (fs::exists(options.output)) throw Error("-o " + options.output + ": already exists");
-  const MapMerge merged = merged_of(file.load(), other.load(), are_copies(file, other), options);
+  const MapsMerge merged = merged_of(file, options);
   const fs::path part = options.output + ".part";
   std::error_code unimportant;
   fs::remove(part, unimportant);
@@ -172,8 +206,14 @@ int merge_files(const MapOptions& options) {
     fs::remove(part, unimportant);
     throw;
   }
-  std::cout << options.output << ": " << count_of(merged.map.list.size(), "landmark") << ", "
-            << merged.pairs.size() << " of them in both\n";
+  std::cout << options.output << ": " << count_of(merged.map.list.size(), "landmark") << "\n";
+  for (std::size_t i = 0; i < merged.placed.size(); ++i) {
+    const Pose& pose = *merged.placed[i].map_from_other;
+    std::cout << options.others[i] << ": at x " << text_of("%.2f", pose.translation_m.x) << " m, y "
+              << text_of("%.2f", pose.translation_m.y) << " m, "
+              << text_of("%.1f", std::atan2(pose.rotation[3], pose.rotation[0]) * 180 / std::numbers::pi)
+              << " degrees; " << count_of(merged.placed[i].pairs.size(), "common landmark") << "\n";
+  }
   return 0;
 }
 
@@ -199,8 +239,10 @@ int forget_some(const MapOptions& options) {
 
 int work_on_map(const MapOptions& options) {
   const bool takes_two = options.action == "diff" || options.action == "merge";
-  if (!takes_two && !options.other.empty())
-    throw Error("map " + options.action + ": expected one map, found a second, " + options.other);
+  if (!takes_two && !options.others.empty())
+    throw Error("map " + options.action + ": expected one map, found a second, " + options.others[0]);
+  if (options.action != "merge" && !options.places.empty())
+    throw Error("--at: is for map merge, not for map " + options.action);
   if (options.action == "show") return show(options);
   if (options.action == "check") return check(options);
   if (options.action == "export") return write_out(options);

@@ -12,11 +12,12 @@ namespace cairn::cli {
 struct MapOptions {
   std::string action;
   std::string file;
-  std::string other;
+  std::vector<std::string> others;
   std::string form = "geojson";
   std::string output;
   std::vector<std::int64_t> ids;
   bool gone = false;
+  std::vector<std::string> places;  // --at: NAME=x,y,deg
   std::int64_t run = 0;
 };
 

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <tuple>
 #include <vector>
 
 #include <cairn/sequence/landmarks.hpp>
@@ -90,6 +93,28 @@ MapLocation corrected(const MapLocation& located, const std::vector<Pull>& pulls
 
 /// The look from an octant; a new one, with -1 pixels, if there is none.
 LandmarkLook& look_from(Landmark& landmark, int octant);
+
+/// Frames that show a cell of the floor before it counts as free.
+inline constexpr int kFloorFrames = 10;
+/// Cells farther away, which only a damaged file has, count as unknown.
+inline constexpr int kFarthestCell = 1'000'000'000;
+/// The cell of the floor below a point, with no frames.
+inline FloorCell cell_at(Point3 in_map) {
+  const auto index = [](double at_m) {
+    const double most = kFarthestCell;
+    return static_cast<int>(std::floor(std::clamp(at_m / kFloorCell_m, -most, most)));
+  };
+  return {index(in_map.x), index(in_map.y), 0};
+}
+/// The order of LandmarkMap::floor.
+inline bool is_before(FloorCell a, FloorCell b) {
+  return std::tie(a.x, a.y) < std::tie(b.x, b.y);
+}
+/// The frames in which the floor was seen there.
+int floor_frames_at(const LandmarkMap& map, FloorCell at);
+
+/// Adds what was seen of the floor: different cells, by x, then y.
+void add_floor(LandmarkMap& map, const std::vector<FloorCell>& cells);
 
 /// The landmark as a candidate for recognition.
 Candidate candidate_of(const Landmark& landmark, const ColourHistogram& colours);

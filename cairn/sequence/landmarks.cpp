@@ -17,7 +17,9 @@ namespace {
 using landmarks::are_apart;
 using landmarks::find_in;
 using landmarks::find_moved;
+using landmarks::floor_frames_at;
 using landmarks::forget_vanished;
+using landmarks::kFloorFrames;
 using landmarks::kPositionAndYaw;
 using landmarks::matrix;
 using landmarks::Matrix3;
@@ -42,7 +44,6 @@ constexpr int kMinPixels = 200;
 constexpr double kLongUnseen_s = 5;
 constexpr double kClosure_s = 5;
 constexpr int kSteadyFrames = 5;
-constexpr int kFloorFrames = 10;
 
 constexpr double kSigmaUp = 0.1;  // of an object's centre, as a share of its height
 
@@ -100,15 +101,6 @@ Candidate candidate_of(const TrackEvidence& evidence, const Track& track) {
           evidence.size,
           evidence.height_over_floor_m,
           track.look};
-}
-
-int floor_frames_at(const LandmarkMap& map, Point3 in_map) {
-  const FloorCell wanted{static_cast<int>(std::floor(in_map.x / kFloorCell_m)),
-                         static_cast<int>(std::floor(in_map.y / kFloorCell_m)), 0};
-  const auto at = std::lower_bound(map.floor.begin(), map.floor.end(), wanted, [](FloorCell a, FloorCell b) {
-    return std::tie(a.x, a.y) < std::tie(b.x, b.y);
-  });
-  return at != map.floor.end() && at->x == wanted.x && at->y == wanted.y ? at->frames : 0;
 }
 
 LandmarkOfTrack of_track(const TrackEvidence& evidence) {
@@ -263,7 +255,7 @@ void learn_floor(LandmarkMap& map, const LandmarkFrame& frame, const Pose& map_f
   constexpr int kStep = 8;
   constexpr double kFlat_m = 0.04;
   constexpr float kReach = 25;  // baselines
-  std::vector<std::pair<int, int>> cells;
+  std::vector<FloorCell> cells;
   for (int y = kStep / 2; y < frame.disparity_px.height(); y += kStep) {
     for (int x = kStep / 2; x < frame.disparity_px.width(); x += kStep) {
       if (frame.ids(x, y) != TrackId::none) continue;
@@ -273,28 +265,13 @@ void learn_floor(LandmarkMap& map, const LandmarkFrame& frame, const Pose& map_f
       const Point3 at = map_from_camera(
           {static_cast<double>(seen->x), static_cast<double>(seen->y), static_cast<double>(seen->z)});
       if (std::abs(at.z) > kFlat_m) continue;
-      cells.emplace_back(static_cast<int>(std::floor(at.x / kFloorCell_m)),
-                         static_cast<int>(std::floor(at.y / kFloorCell_m)));
+      cells.push_back(landmarks::cell_at(at));
     }
   }
-  std::sort(cells.begin(), cells.end());
+  std::sort(cells.begin(), cells.end(), landmarks::is_before);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  std::vector<FloorCell> fresh;
-  for (const auto& [x, y] : cells) {
-    const auto at =
-        std::lower_bound(map.floor.begin(), map.floor.end(), FloorCell{x, y, 0},
-                         [](FloorCell a, FloorCell b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
-    if (at != map.floor.end() && at->x == x && at->y == y) {
-      if (at->frames < std::numeric_limits<int>::max()) ++at->frames;
-    } else {
-      fresh.push_back({x, y, 1});
-    }
-  }
-  if (fresh.empty()) return;
-  const auto middle = static_cast<std::ptrdiff_t>(map.floor.size());
-  map.floor.insert(map.floor.end(), fresh.begin(), fresh.end());
-  std::inplace_merge(map.floor.begin(), map.floor.begin() + middle, map.floor.end(),
-                     [](FloorCell a, FloorCell b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
+  for (FloorCell& cell : cells) cell.frames = 1;
+  landmarks::add_floor(map, cells);
 }
 
 /// Adds the uncertainty that odometry gained since the anchor to that of the anchor. As a difference of
@@ -440,7 +417,8 @@ void gather_all(LandmarksState& state, const LandmarkFrame& frame, const Landmar
       fresh.track = track.id;
       fresh.first = std::max(track.first, state.segment_began);
       if (state.is_located)
-        fresh.floor_before = floor_frames_at(state.map, state.located.map_from_odom(track.position_m));
+        fresh.floor_before =
+            floor_frames_at(state.map, landmarks::cell_at(state.located.map_from_odom(track.position_m)));
       at = state.tracks.insert(at, fresh);
     }
     if (track.object == ObjectId::none) continue;

@@ -158,10 +158,10 @@ Recognition recognise(const LandmarkMap& map, const std::vector<Candidate>& cand
                       const MapLocation& located, const std::vector<LandmarkId>& taken,
                       const LandmarksConfig& config);
 
-/// The same with an unknown pose: the largest constellation of pairs with consistent mutual distances, of at
-/// least `relocation_pairs`, with twice as many consistent distances as at any other place. `guess`: a
-/// probable pose; a place within its 95 % needs only `min_pairs`. The pose is a rotation about z and a
-/// translation. Otherwise a refusal.
+/// The same with an unknown pose: the largest constellation of pairs with consistent mutual distances. It has at least
+/// `relocation_pairs`, twice as many consistent distances as any other place, and so many pairs that chance hardly
+/// gives them, given what is known of free floor. `guess`: a probable pose; a place within its 95 % needs only
+/// `min_pairs`. The pose is a rotation about z and a translation. Otherwise a refusal.
 Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
                      const LandmarksConfig& config, const std::optional<MapLocation>& guess = std::nullopt);
 
@@ -318,5 +318,25 @@ MapMerge merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Po
 /// The same for two copies of one map: landmarks that existed when it was copied are paired by id, and the
 /// newer record is kept (by run, then by last detection); landmarks added since are recognised or added.
 MapMerge merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config);
+
+struct MapToMerge {
+  LandmarkMap map;
+  bool is_copy = false;                     // of the map that it is merged into: then its pose is that map's
+  std::optional<Pose> map_from_other = {};  // if known
+};
+/// Where a map was placed; nowhere without `map_from_other`.
+struct PlacedMap {
+  std::optional<Pose> map_from_other;
+  std::vector<LandmarkPair> pairs;  // landmark of the other map (as track number), landmark of the merged one
+  RecognitionRefusal refusal = RecognitionRefusal::none;
+};
+struct MapsMerge {
+  LandmarkMap map;
+  std::vector<PlacedMap> placed;  // in the order of `others`
+};
+/// merge() and merge_copies() of several maps, in the frame of `map`: first copies, then those with a known pose, then
+/// the others, those with the most landmarks first. Each is compared with all that is there already, so two that have
+/// nothing in common may be joined by a third. A map without a place is left out.
+MapsMerge merge_all(LandmarkMap map, std::vector<MapToMerge> others, const LandmarksConfig& config);
 
 }  // namespace cairn

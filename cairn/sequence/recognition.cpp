@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <random>
 #include <tuple>
 
 #include <cairn/sequence/landmark_geometry.hpp>
@@ -72,6 +75,27 @@ MapLocation corrected(const MapLocation& located, const std::vector<Pull>& pulls
   return {turn * located.map_from_odom, rows_of(Matrix4(normal.inverse())), located.camera_in_odom_m};
 }
 
+int floor_frames_at(const LandmarkMap& map, FloorCell wanted) {
+  const auto at = std::lower_bound(map.floor.begin(), map.floor.end(), wanted, is_before);
+  return at != map.floor.end() && at->x == wanted.x && at->y == wanted.y ? at->frames : 0;
+}
+
+void add_floor(LandmarkMap& map, const std::vector<FloorCell>& cells) {
+  std::vector<FloorCell> fresh;
+  for (const FloorCell& cell : cells) {
+    const auto at = std::lower_bound(map.floor.begin(), map.floor.end(), cell, is_before);
+    if (at != map.floor.end() && at->x == cell.x && at->y == cell.y) {
+      at->frames += std::min(cell.frames, std::numeric_limits<int>::max() - at->frames);
+    } else {
+      fresh.push_back(cell);
+    }
+  }
+  if (fresh.empty()) return;
+  const auto middle = static_cast<std::ptrdiff_t>(map.floor.size());
+  map.floor.insert(map.floor.end(), fresh.begin(), fresh.end());
+  std::inplace_merge(map.floor.begin(), map.floor.begin() + middle, map.floor.end(), is_before);
+}
+
 Candidate candidate_of(const Landmark& landmark, const ColourHistogram& colours) {
   return {TrackId{number(landmark.id)}, landmark.position_m,
           landmark.covariance_m2,       landmark.size,
@@ -101,6 +125,12 @@ struct CompatiblePair {
 };
 
 constexpr std::size_t kMaxAllowed = 300;
+
+/// A place is refused if chance would give more such places than this …
+constexpr double kByChance = 1e-3;
+/// … or than this where both sides have few objects: they seldom have four in common.
+constexpr double kByChanceOfFew = 5e-3;
+constexpr std::size_t kFew = 10;
 
 std::vector<CompatiblePair> allowed_pairs(const LandmarkMap& map, const std::vector<Candidate>& candidates,
                                           const LandmarksConfig& config) {
@@ -347,10 +377,185 @@ std::vector<Constellation> constellations_of(const std::vector<CompatiblePair>& 
   return places;
 }
 
-}  // namespace
+/// The landmarks that may be there.
+std::vector<std::size_t> present_in(const LandmarkMap& map) {
+  std::vector<std::size_t> present;
+  for (std::size_t l = 0; l < map.list.size(); ++l) {
+    if (!map.list[l].is_gone) present.push_back(l);
+  }
+  return present;
+}
 
-Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
-                     const LandmarksConfig& config, const std::optional<MapLocation>& guess) {
+/// The probability that the distances of two candidates and of two landmarks agree, whatever these look like: of
+/// couples of each, drawn by a fixed rule.
+double chance_of_agreement(const std::vector<Candidate>& candidates, const LandmarkMap& map,
+                           const std::vector<std::size_t>& present) {
+  constexpr int kDraws = 2000;
+  std::minstd_rand draw;
+  const auto below = [&](std::size_t count) { return std::size_t{draw()} % count; };
+  int agreed = 0;
+  for (int k = 0; k < kDraws; ++k) {
+    const CompatiblePair a{below(candidates.size()), present[below(present.size())], 0};
+    const CompatiblePair b{below(candidates.size()), present[below(present.size())], 0};
+    agreed += agree(a, b, candidates, map) ? 1 : 0;
+  }
+  return (agreed + 1.0) / kDraws;
+}
+
+/// The area on which so many landmarks stand as densely as they do: rooms count, what is between them does not.
+double area_of(const LandmarkMap& map, const std::vector<std::size_t>& present) {
+  constexpr double kNear_m = 1.5;
+  double near = 0;
+  for (const std::size_t a : present) {
+    for (const std::size_t b : present) {
+      const Eigen::Vector3d off = vector(map.list[a].position_m - map.list[b].position_m);
+      near += off.head<2>().norm() < kNear_m ? 1 : 0;  // itself, too
+    }
+  }
+  const auto count = static_cast<double>(present.size());
+  return count * std::numbers::pi * kNear_m * kNear_m / (near / count);
+}
+
+/// What chance alone gives where nothing is common to both: each of the compatible pairs is a chance meeting of two
+/// looks. Two of them whose distances agree give a pose; there, each other one is within its gate with the probability
+/// of the gate's area in the map's, so the number of further ones has a Poisson distribution.
+class Chance {
+ public:
+  Chance(const std::vector<CompatiblePair>& pairs, const std::vector<Candidate>& candidates,
+         const LandmarkMap& map, double gate) {
+    const std::vector<std::size_t> present = present_in(map);
+    double gates_m2 = 0;
+    for (const CompatiblePair& pair : pairs) {
+      const Matrix3 both =
+          matrix(candidates[pair.candidate].covariance_m2) + matrix(map.list[pair.landmark].covariance_m2);
+      gates_m2 += std::numbers::pi * gate * std::sqrt(both.topLeftCorner<2, 2>().determinant());
+    }
+    const auto count = static_cast<double>(pairs.size());
+    further_ = gates_m2 / area_of(map, present);
+    seeds_ = count * (count - 1) / 2 * chance_of_agreement(candidates, map, present);
+  }
+
+  /// The expected number of constellations of at least so many pairs.
+  [[nodiscard]] double expected(std::size_t pairs) const {
+    double term = std::exp(-further_);
+    double tail = 1;
+    for (std::size_t more = 1; more + 2 <= pairs; ++more) {
+      tail -= term;
+      term *= further_ / static_cast<double>(more);
+    }
+    // Each two of its pairs are a seed of the same constellation.
+    const auto all = static_cast<double>(pairs);
+    return seeds_ * std::max(tail, 0.0) / (all * (all - 1) / 2);
+  }
+
+ private:
+  double seeds_ = 0;
+  double further_ = 0;
+};
+
+/// What a map knows of its floor.
+class KnownFloor {
+ public:
+  explicit KnownFloor(const LandmarkMap& map) : map_(map) {
+    std::vector<FloorCell> around;
+    for (const FloorCell& cell : map.floor) {
+      if (cell.frames < landmarks::kFloorFrames ||
+          std::abs(static_cast<double>(cell.x)) > landmarks::kFarthestCell ||
+          std::abs(static_cast<double>(cell.y)) > landmarks::kFarthestCell)
+        continue;
+      for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) around.push_back({cell.x + x, cell.y + y, 0});
+      }
+    }
+    std::sort(around.begin(), around.end(), landmarks::is_before);
+    int seen = 0;
+    int free = 0;
+    for (std::size_t i = 0; i < around.size();) {
+      std::size_t next = i;
+      while (next < around.size() && around[next] == around[i]) ++next;
+      if (next - i >= kSeenAround) {
+        ++seen;
+        free += is_free(around[i]) ? 1 : 0;
+      }
+      i = next;
+    }
+    if (seen == 0) return;
+    double own = 0.5;
+    double present = 1;
+    for (const std::size_t l : present_in(map)) {
+      own += is_free(landmarks::cell_at(map.list[l].position_m)) ? 1 : 0;
+      ++present;
+    }
+    right_ = std::clamp(own / present, kLeast, kMost);
+    wrong_ = std::clamp(static_cast<double>(free) / seen, right_, kMost);
+  }
+
+  /// How much likelier a wrong place is than the right one, with unknown objects at these positions. At the right one,
+  /// some stand on free floor, too: what came since, and what does not fill its cell; as many as of the map's own
+  /// landmarks. Floor that was not seen says nothing.
+  [[nodiscard]] double odds(const std::vector<Point3>& objects) const {
+    constexpr double kMostGain = 0.01;  // objects that one pose moves together are not independent
+    double odds = 1;
+    for (const Point3 at : objects) {
+      const FloorCell cell = landmarks::cell_at(at);
+      if (is_free(cell)) {
+        odds *= wrong_ / right_;
+      } else if (is_seen(cell)) {
+        odds *= (1 - wrong_) / (1 - right_);
+      }
+    }
+    return std::max(odds, kMostGain);
+  }
+
+ private:
+  static constexpr double kLeast = 0.05;
+  static constexpr double kMost = 0.9;
+  static constexpr std::size_t kSeenAround = 4;  // free cells of 3 × 3
+
+  [[nodiscard]] bool is_free(FloorCell cell) const {
+    return landmarks::floor_frames_at(map_, cell) >= landmarks::kFloorFrames;
+  }
+  [[nodiscard]] bool is_seen(FloorCell cell) const {
+    std::size_t free = 0;
+    for (int y = -1; y <= 1; ++y) {
+      for (int x = -1; x <= 1; ++x) free += is_free({cell.x + x, cell.y + y, 0}) ? 1 : 0;
+    }
+    return free >= kSeenAround;
+  }
+
+  const LandmarkMap& map_;
+  double right_ = 1;  // share of objects that stand on free floor at the right place
+  double wrong_ = 1;  // and at a wrong one
+};
+
+/// The same for a constellation: candidates that it does not pair on the floor of the map, and landmarks that it does
+/// not pair on that of the map from which the candidates come, if there is one.
+double odds_by_floor(const Constellation& place, const std::vector<CompatiblePair>& pairs,
+                     const std::vector<Candidate>& candidates, const LandmarkMap& map,
+                     const LandmarkMap* other) {
+  const auto is_paired = [&](std::size_t CompatiblePair::*of, std::size_t which) {
+    return std::any_of(place.pairs.begin(), place.pairs.end(),
+                       [&](std::size_t i) { return pairs[i].*of == which; });
+  };
+  std::vector<Point3> objects;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (!is_paired(&CompatiblePair::candidate, c))
+      objects.push_back(place.map_from_odom(candidates[c].position_m));
+  }
+  const double odds = KnownFloor(map).odds(objects);
+  if (other == nullptr) return odds;
+  objects.clear();
+  const Pose other_from_map = inverse(place.map_from_odom);
+  for (const std::size_t l : present_in(map)) {
+    if (!is_paired(&CompatiblePair::landmark, l)) objects.push_back(other_from_map(map.list[l].position_m));
+  }
+  return odds * KnownFloor(*other).odds(objects);
+}
+
+/// relocate(); `other`: the map from which the candidates come, nullptr if they are objects in view.
+Recognition placed(const LandmarkMap& map, const std::vector<Candidate>& candidates,
+                   const LandmarksConfig& config, const std::optional<MapLocation>& guess,
+                   const LandmarkMap* other) {
   Recognition result;
   const auto enough = static_cast<std::size_t>(config.relocation_pairs);
   // Two at least: one determines no direction.
@@ -365,9 +570,11 @@ Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candi
   constexpr double kTight = 7.81;
   const double gate = std::min(static_cast<double>(config.gate), kTight);
   std::vector<Constellation> places = constellations_of(pairs, candidates, map, gate);
+  const auto is_near = [&](const Constellation& place) {
+    return guess && suits(place.map_from_odom, *guess);
+  };
   std::erase_if(places, [&](const Constellation& place) {
-    const bool is_near = guess && suits(place.map_from_odom, *guess);
-    return place.pairs.size() < (is_near ? enough_near : enough);
+    return place.pairs.size() < (is_near(place) ? enough_near : enough);
   });
   std::stable_sort(places.begin(), places.end(), [](const Constellation& a, const Constellation& b) {
     return std::make_tuple(a.pairs.size(), -a.squares) > std::make_tuple(b.pairs.size(), -b.squares);
@@ -380,12 +587,26 @@ Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candi
     result.refusal = RecognitionRefusal::ambiguous;
     return result;
   }
+  const bool are_few = std::max(candidates.size(), map.list.size()) <= kFew;
+  if (!is_near(places[0]) && Chance(pairs, candidates, map, gate).expected(places[0].pairs.size()) *
+                                     odds_by_floor(places[0], pairs, candidates, map, other) >
+                                 (are_few ? kByChanceOfFew : kByChance)) {
+    result.refusal = RecognitionRefusal::too_few_pairs;
+    return result;
+  }
   result.map_from_odom = places[0].map_from_odom;
   for (const std::size_t i : places[0].pairs) {
     result.pairs.push_back(
         {candidates[pairs[i].candidate].track, map.list[pairs[i].landmark].id, pairs[i].score});
   }
   return result;
+}
+
+}  // namespace
+
+Recognition relocate(const LandmarkMap& map, const std::vector<Candidate>& candidates,
+                     const LandmarksConfig& config, const std::optional<MapLocation>& guess) {
+  return placed(map, candidates, config, guess, nullptr);
 }
 
 namespace {
@@ -437,6 +658,28 @@ void add_looks(Landmark& known, const std::vector<LandmarkLook>& others) {
   }
 }
 
+/// The floor of a map as seen from the frame that `pose` leads to: for each cell there, the one that its middle is in.
+std::vector<FloorCell> moved(const LandmarkMap& from, const Pose& pose) {
+  const Pose back = inverse(pose);
+  std::vector<FloorCell> cells;
+  for (const FloorCell& cell : from.floor) {
+    for (const double x : {0.1, 0.5, 0.9}) {
+      for (const double y : {0.1, 0.5, 0.9}) {
+        cells.push_back(
+            landmarks::cell_at(pose({(cell.x + x) * kFloorCell_m, (cell.y + y) * kFloorCell_m, 0})));
+      }
+    }
+  }
+  std::sort(cells.begin(), cells.end(), landmarks::is_before);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  for (FloorCell& cell : cells) {
+    const Point3 at = back({(cell.x + 0.5) * kFloorCell_m, (cell.y + 0.5) * kFloorCell_m, 0});
+    cell.frames = landmarks::floor_frames_at(from, landmarks::cell_at(at));
+  }
+  std::erase_if(cells, [](FloorCell cell) { return cell.frames == 0; });
+  return cells;
+}
+
 MapMerge unite(LandmarkMap map, const LandmarkMap& other, const Recognition& found, const Pose& pose) {
   MapMerge merged;
   merged.map_from_other = pose;
@@ -474,6 +717,7 @@ MapMerge unite(LandmarkMap map, const LandmarkMap& other, const Recognition& fou
     // Stamps of different runs are not comparable: first, last and run remain those of this map.
     if (known.name.empty()) known.name = here.name;
   }
+  landmarks::add_floor(merged.map, moved(other, pose));
   return merged;
 }
 
@@ -483,7 +727,7 @@ MapMerge merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Po
                const LandmarksConfig& config) {
   const std::vector<Candidate> candidates = candidates_of(other);
   const Recognition found = map_from_other ? recognise(map, candidates, {*map_from_other, {}, {}}, {}, config)
-                                           : relocate(map, candidates, config);
+                                           : placed(map, candidates, config, std::nullopt, &other);
   const std::optional<Pose> pose = map_from_other ? map_from_other : found.map_from_odom;
   if (pose) return unite(std::move(map), other, found, *pose);
   return {std::move(map), found.pairs, std::nullopt, found.refusal};
@@ -513,10 +757,48 @@ MapMerge merge_copies(LandmarkMap map, const LandmarkMap& other, const Landmarks
     }
     ours->name = name;
   }
+  // The later of two copies has seen what the other had, and more: what it knows of a cell does not add up.
+  for (FloorCell cell : other.floor) {
+    cell.frames -= std::min(cell.frames, landmarks::floor_frames_at(map, cell));
+    if (cell.frames > 0) fresh.floor.push_back(cell);
+  }
   const Recognition found = recognise(map, candidates_of(fresh), {Pose{}, {}, {}}, shared, config);
   MapMerge merged = unite(std::move(map), fresh, found, Pose{});
   merged.pairs.insert(merged.pairs.begin(), pairs.begin(), pairs.end());
   return merged;
+}
+
+MapsMerge merge_all(LandmarkMap map, std::vector<MapToMerge> others, const LandmarksConfig& config) {
+  MapsMerge all{std::move(map), std::vector<PlacedMap>(others.size())};
+  const auto add = [&](std::size_t i, MapMerge merged) {
+    all.placed[i] = {merged.map_from_other, merged.pairs, merged.refusal};
+    all.map = std::move(merged.map);
+  };
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (others[i].is_copy) add(i, merge_copies(std::move(all.map), others[i].map, config));
+  }
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (!others[i].is_copy && others[i].map_from_other)
+      add(i, merge(std::move(all.map), others[i].map, others[i].map_from_other, config));
+  }
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (!all.placed[i].map_from_other) left.push_back(i);
+  }
+  std::stable_sort(left.begin(), left.end(), [&](std::size_t a, std::size_t b) {
+    return others[a].map.list.size() > others[b].map.list.size();
+  });
+  // One that finds no place may find one once others are there.
+  for (std::size_t i = 0; i < left.size();) {
+    add(left[i], merge(std::move(all.map), others[left[i]].map, std::nullopt, config));
+    if (!all.placed[left[i]].map_from_other) {
+      ++i;
+      continue;
+    }
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
+    i = 0;
+  }
+  return all;
 }
 
 }  // namespace cairn

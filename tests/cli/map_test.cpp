@@ -120,7 +120,8 @@ TEST_F(MapCommand, ComparesAndMergesMapsWithDifferentOrigins) {
   EXPECT_EQ(run({"map", "diff", "room.db", "other.db"}).out, "no change\n");
   const Outcome merged = run({"map", "merge", "room.db", "other.db", "-o", "both.db"});
   EXPECT_EQ(merged.code, 0) << merged.err;
-  EXPECT_EQ(merged.out, "both.db: 5 landmarks, 5 of them in both\n");
+  EXPECT_EQ(merged.out,
+            "both.db: 5 landmarks\nother.db: at x 1.17 m, y 4.96 m, -114.6 degrees; 5 common landmarks\n");
   EXPECT_EQ(run({"map", "check", "both.db"}).code, 0);
   EXPECT_FALSE(fs::exists(at("both.db.part")));
   refuses({"map", "merge", "room.db", "other.db", "-o", "both.db"}, {"both.db", "already exists"});
@@ -128,11 +129,41 @@ TEST_F(MapCommand, ComparesAndMergesMapsWithDifferentOrigins) {
   refuses({"map", "merge", "room.db", "strange.db", "-o", "all.db"}, {"strange.db", "too_few_pairs"});
 }
 
+TEST_F(MapCommand, MergesSeveralMapsWhereTheyMatchOrAreSaidToBe) {
+  Pose elsewhere = rotation_about({0, 0, 2});
+  elsewhere.translation_m = {5, 1, 0};
+  write_map("a.db");
+  write_map("b.db", elsewhere);
+  write_map("c.db", elsewhere, 2);  // other colours
+  refuses({"map", "merge", "a.db", "b.db", "c.db", "-o", "all.db"}, {"c.db", "too_few_pairs", "--at"});
+  EXPECT_FALSE(fs::exists(at("all.db")));
+  const Outcome merged =
+      run({"map", "merge", "a.db", "--at", "c=20,-3.5,90", "c.db", "b.db", "-o", "all.db"});
+  EXPECT_EQ(merged.code, 0) << merged.err;
+  EXPECT_NE(merged.out.find("all.db: 10 landmarks\nc.db: at x 20.00 m, y -3.50 m, 90.0 degrees; 0 common"),
+            std::string::npos)
+      << merged.out;
+  refuses({"map", "merge", "a.db", "b.db", "-o", "x.db", "--at", "d=1,2,3"},
+          {"d=1,2,3", "0 maps", "expected 1"});
+  refuses({"map", "merge", "a.db", "b.db", "-o", "x.db", "--at", "b=1,2,3", "--at", "b=1,2,4"},
+          {"b=1,2,4", "second"});
+  fs::copy_file(at("b.db"), at("b2.db"));
+  refuses({"map", "merge", "a.db", "b.db", "b2.db", "-o", "x.db"}, {"b2.db", "copy of", "b.db", "twice"});
+  fs::copy_file(at("a.db"), at("a2.db"));
+  refuses({"map", "merge", "a.db", "a2.db", "-o", "x.db", "--at", "a2=0,0,0"}, {"a2.db", "copy of", "a.db"});
+  for (const char* place : {"b", "b=", "b=1,2", "b=1,2,3,4", "b=1,2,nan", "b=1e9,0,0"})
+    refuses({"map", "merge", "a.db", "b.db", "-o", "x.db", "--at", place}, {"--at", place, "NAME=X,Y,DEG"});
+  refuses({"map", "diff", "a.db", "b.db", "c.db"}, {"3 maps", "expected 2"});
+  refuses({"map", "show", "a.db", "--at", "b=1,2,3"}, {"--at", "map merge"});
+}
+
 TEST_F(MapCommand, MergesACopyWithoutCountingItTwice) {
   write_map("room.db");
   fs::copy_file(at("room.db"), at("copy.db"));
   const Outcome merged = run({"map", "merge", "room.db", "copy.db", "-o", "both.db"});
-  EXPECT_EQ(merged.out, "both.db: 5 landmarks, 5 of them in both\n") << merged.err;
+  EXPECT_EQ(merged.out,
+            "both.db: 5 landmarks\ncopy.db: at x 0.00 m, y 0.00 m, 0.0 degrees; 5 common landmarks\n")
+      << merged.err;
   for (const Landmark& l : MapFile::open(at("both.db"), MapMode::read_only).load().list) {
     EXPECT_EQ(l.seen, 20);
     EXPECT_NEAR(l.covariance_m2[0], 0.0025, 1e-12);
@@ -199,7 +230,7 @@ TEST_F(MapCommand, RefusesFilesThatAreNotMaps) {
   refuses({"map", "dance", "text.db"}, {"dance"});
   refuses({"map", "show"}, {"FILE"});
   write_map("room.db");
-  refuses({"map", "diff", "room.db"}, {"second map"});
+  refuses({"map", "diff", "room.db"}, {"expected 2"});
   refuses({"map", "show", "room.db", "room.db"}, {"expected one map"});
   refuses({"map", "export", "room.db", "--form", "shapefile"}, {"shapefile"});
   refuses({"map", "export", "room.db", "-o", "no/such/folder/out.json"}, {"no/such/folder"});

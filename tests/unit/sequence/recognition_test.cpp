@@ -5,6 +5,7 @@
 #include <cairn/sequence/landmarks.hpp>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace cairn {
 namespace {
@@ -124,6 +125,154 @@ TEST(Relocation, IsAmbiguousInARepetitiveRoom) {
   const Recognition found = relocate(map, candidates, {});
   EXPECT_FALSE(found.map_from_odom.has_value());
   EXPECT_EQ(found.refusal, RecognitionRefusal::ambiguous);
+}
+
+/// A map of objects in nine colours, the first of them at the places and of the colours of `shared`.
+LandmarkMap room_of(std::size_t objects, const std::vector<Landmark>& shared, const Pose& map_from_room,
+                    std::mt19937& random) {
+  std::uniform_real_distribution<> along(0, std::sqrt(2.5 * static_cast<double>(objects)));
+  std::normal_distribution<> noise(0, 0.05);
+  LandmarkMap map;
+  for (std::size_t i = 0; i < objects; ++i) {
+    Landmark l =
+        i < shared.size() ? shared[i] : known(0, {along(random), along(random), 0.25}, random() % 9 * 5);
+    if (i >= shared.size()) l.size.height_m = 2 * (l.height_over_floor_m = along(random) / 10 + 0.1);
+    l.position_m.z = l.height_over_floor_m;
+    l.id = LandmarkId{map.next++};
+    l.position_m = map_from_room(l.position_m) + Point3{noise(random), noise(random), 0};
+    map.list.push_back(l);
+  }
+  return map;
+}
+
+TEST(Maps, OfPlacesWithNothingInCommonAreNotJoined) {
+  std::mt19937 random(1);
+  for (int k = 0; k < 20; ++k) {
+    const LandmarkMap a = room_of(50, {}, {}, random);
+    const LandmarkMap b = room_of(50, {}, {}, random);
+    EXPECT_FALSE(merge(a, b, std::nullopt, {}).map_from_other.has_value()) << k;
+  }
+}
+
+TEST(Maps, OfOnePlaceAreJoinedByTenObjectsOfFifty) {
+  std::mt19937 random(1);
+  Pose b_from_room = rotation_about({0, 0, 2});
+  b_from_room.translation_m = {5, 1, 0};
+  for (int k = 0; k < 20; ++k) {
+    const LandmarkMap a = room_of(50, {}, {}, random);
+    const LandmarkMap b = room_of(50, {a.list.begin(), a.list.begin() + 10}, b_from_room, random);
+    const MapMerge merged = merge(a, b, std::nullopt, {});
+    ASSERT_TRUE(merged.map_from_other.has_value()) << k;
+    EXPECT_LT(length((*merged.map_from_other * b_from_room)({4, 4, 0}) - Point3{4, 4, 0}), 0.3) << k;
+    EXPECT_GE(merged.pairs.size(), 6U);
+  }
+}
+
+TEST(Maps, AreJoinedByFewerObjectsWhereTheOthersStandOnNoFreeFloor) {
+  std::mt19937 random(1);
+  const auto with_floor = [](LandmarkMap map) {
+    for (int x = -4; x < 50; ++x) {
+      for (int y = -4; y < 50; ++y) {
+        const bool is_taken = std::any_of(map.list.begin(), map.list.end(), [&](const Landmark& l) {
+          return std::hypot(l.position_m.x - kFloorCell_m * (x + 0.5),
+                            l.position_m.y - kFloorCell_m * (y + 0.5)) < 0.4;
+        });
+        if (!is_taken) map.floor.push_back({x, y, 20});
+      }
+    }
+    return map;
+  };
+  int with = 0;
+  int without = 0;
+  int all_free_joined = 0;
+  for (int k = 0; k < 20; ++k) {
+    const LandmarkMap a = room_of(50, {}, {}, random);
+    // The others of b are those of a in other colours: not recognised, but not on free floor either.
+    LandmarkMap b = room_of(50, a.list, {}, random);
+    for (std::size_t i = 4; i < b.list.size(); ++i) {
+      std::size_t bin = 0;
+      while (b.list[i].looks[0].colours[8 + bin] == 0) bin += 5;
+      b.list[i].looks[0].colours = known(0, {}, (bin + 5 * (1 + random() % 8)) % 45).looks[0].colours;
+    }
+    const auto is_right = [](const MapMerge& merged) {
+      return merged.map_from_other && length((*merged.map_from_other)({4, 4, 0}) - Point3{4, 4, 0}) < 0.3;
+    };
+    without += is_right(merge(a, b, std::nullopt, {})) ? 1 : 0;
+    with += is_right(merge(with_floor(a), with_floor(b), std::nullopt, {})) ? 1 : 0;
+    // Objects on what is free in the other map speak against the place.
+    LandmarkMap all_free = with_floor({});
+    all_free.list = a.list;
+    all_free_joined += merge(all_free, b, std::nullopt, {}).map_from_other ? 1 : 0;
+  }
+  EXPECT_GT(with, 15);
+  EXPECT_LT(without, with);
+  EXPECT_LE(all_free_joined, without);
+}
+
+TEST(Maps, SeveralAreJoinedByWayOfEachOther) {
+  std::mt19937 random(1);
+  const LandmarkMap b = room_of(20, {}, {}, random);
+  const LandmarkMap a = room_of(20, {b.list.begin(), b.list.begin() + 8}, {}, random);
+  const LandmarkMap c = room_of(15, {b.list.begin() + 10, b.list.begin() + 18}, {}, random);
+  EXPECT_FALSE(merge(a, c, std::nullopt, {}).map_from_other.has_value());
+  const MapsMerge merged = merge_all(a, {{c, false, {}}, {b, false, {}}}, {});
+  ASSERT_EQ(merged.placed.size(), 2U);
+  for (const PlacedMap& placed : merged.placed) {
+    ASSERT_TRUE(placed.map_from_other.has_value());
+    EXPECT_LT(length((*placed.map_from_other)({3, 3, 0}) - Point3{3, 3, 0}), 0.3);
+  }
+  EXPECT_EQ(merged.map.list.size(), 20U + 12U + 7U);
+}
+
+TEST(Relocation, NeedsMoreThanChanceGivesUnlessThePlaceWasGuessed) {
+  std::mt19937 random(2);
+  const LandmarkMap map = room_of(60, {}, {}, random);
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < 12; ++i) {
+    // Three objects of the map, and nine others.
+    const Landmark l = i < 3 ? map.list[i] : room_of(1, {}, {}, random).list[0];
+    candidates.push_back({TrackId{static_cast<std::int64_t>(i)}, l.position_m, l.covariance_m2, l.size,
+                          l.height_over_floor_m, l.looks[0].colours});
+  }
+  EXPECT_FALSE(relocate(map, candidates, {}).map_from_odom.has_value());
+  MapLocation guess;
+  for (const std::size_t i : {0U, 5U, 10U}) guess.covariance[i] = 0.04;
+  guess.covariance[15] = 0.01;
+  EXPECT_TRUE(relocate(map, candidates, {}, guess).map_from_odom.has_value());
+}
+
+TEST(Maps, TurnedFloorHasNoHoles) {
+  LandmarkMap a;
+  LandmarkMap b;
+  for (int x = 0; x < 20; ++x) {
+    for (int y = 0; y < 20; ++y) b.floor.push_back({x, y, 7});
+  }
+  const MapMerge merged = merge(a, b, rotation_about({0, 0, 0.7}), {});
+  std::size_t inside = 0;
+  for (const FloorCell& cell : merged.map.floor) {
+    EXPECT_EQ(cell.frames, 7);
+    ++inside;
+  }
+  EXPECT_NEAR(static_cast<double>(inside), 400, 25);
+}
+
+TEST(Maps, FloorThatCopiesShareDoesNotCountTwice) {
+  LandmarkMap a;
+  a.floor = {{0, 0, 3}, {0, 1, 9}};
+  LandmarkMap copy;
+  copy.floor = {{0, 0, 5}, {0, 1, 4}, {2, 2, 1}};
+  EXPECT_EQ(merge_copies(a, copy, {}).map.floor, (std::vector<FloorCell>{{0, 0, 5}, {0, 1, 9}, {2, 2, 1}}));
+}
+
+TEST(Maps, TheFloorOfBothIsKnownAfterwards) {
+  LandmarkMap a;
+  a.floor = {{0, 0, 3}, {0, 1, 4}};
+  LandmarkMap b;
+  b.floor = {{-4, 1, 5}, {0, 0, 6}};
+  Pose a_from_b;
+  a_from_b.translation_m = {1, 0, 0};
+  const MapMerge merged = merge(a, b, a_from_b, {});
+  EXPECT_EQ(merged.map.floor, (std::vector<FloorCell>{{0, 0, 3}, {0, 1, 9}, {4, 0, 6}}));
 }
 
 TEST(Maps, CopiesAreMergedWithoutDoubleCounting) {
