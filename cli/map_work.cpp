@@ -132,7 +132,7 @@ MapsMerge merged_of(const MapFile& file, const MapOptions& options) {
     }
     others.push_back({files[i].load(), is_copy, places[i]});
   }
-  MapsMerge merged = merge_all(file.load(), std::move(others), LandmarksConfig{});
+  MapsMerge merged = merge_all(file.load(), others, LandmarksConfig{});
   for (std::size_t i = 0; i < merged.placed.size(); ++i) {
     if (merged.placed[i].map_from_other) continue;
     throw Error(options.others[i] + ": matches no place in " + options.file + " (" +

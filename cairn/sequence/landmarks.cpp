@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cairn/io/image_files.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <cairn/sequence/changes.hpp>

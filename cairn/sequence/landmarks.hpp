@@ -305,13 +305,16 @@ LandmarkUpdate advance_landmarks(LandmarksState state, const LandmarkFrame& fram
 /// The changes at the end of a run: the last event of each landmark, without those that went and came back.
 std::vector<LandmarkEvent> changes_of(const std::vector<LandmarkEvent>& events);
 
+/// Where a map was placed in another one; nowhere without `map_from_other`.
+struct PlacedMap {
+  std::optional<Pose> map_from_other;
+  std::vector<LandmarkPair> pairs;  // landmark of the other map (as track number), landmark of the merged one
+  RecognitionRefusal refusal = RecognitionRefusal::none;
+};
 /// `other` transformed into the frame of `map` by relocation, recognised landmarks merged, the others added.
 /// `map_from_other`: the transform, if known.
-struct MapMerge {
+struct MapMerge : PlacedMap {
   LandmarkMap map;
-  std::vector<LandmarkPair> pairs;  // landmark of `other` (as track number), landmark of `map`
-  std::optional<Pose> map_from_other;
-  RecognitionRefusal refusal = RecognitionRefusal::none;
 };
 MapMerge merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
                const LandmarksConfig& config);
@@ -324,12 +327,6 @@ struct MapToMerge {
   bool is_copy = false;                     // of the map that it is merged into: then its pose is that map's
   std::optional<Pose> map_from_other = {};  // if known
 };
-/// Where a map was placed; nowhere without `map_from_other`.
-struct PlacedMap {
-  std::optional<Pose> map_from_other;
-  std::vector<LandmarkPair> pairs;  // landmark of the other map (as track number), landmark of the merged one
-  RecognitionRefusal refusal = RecognitionRefusal::none;
-};
 struct MapsMerge {
   LandmarkMap map;
   std::vector<PlacedMap> placed;  // in the order of `others`
@@ -337,6 +334,6 @@ struct MapsMerge {
 /// merge() and merge_copies() of several maps, in the frame of `map`: first copies, then those with a known pose, then
 /// the others, those with the most landmarks first. Each is compared with all that is there already, so two that have
 /// nothing in common may be joined by a third. A map without a place is left out.
-MapsMerge merge_all(LandmarkMap map, std::vector<MapToMerge> others, const LandmarksConfig& config);
+MapsMerge merge_all(LandmarkMap map, const std::vector<MapToMerge>& others, const LandmarksConfig& config);
 
 }  // namespace cairn

@@ -730,7 +730,7 @@ MapMerge merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Po
                                            : placed(map, candidates, config, std::nullopt, &other);
   const std::optional<Pose> pose = map_from_other ? map_from_other : found.map_from_odom;
   if (pose) return unite(std::move(map), other, found, *pose);
-  return {std::move(map), found.pairs, std::nullopt, found.refusal};
+  return {{std::nullopt, found.pairs, found.refusal}, std::move(map)};
 }
 
 MapMerge merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config) {
@@ -768,11 +768,11 @@ MapMerge merge_copies(LandmarkMap map, const LandmarkMap& other, const Landmarks
   return merged;
 }
 
-MapsMerge merge_all(LandmarkMap map, std::vector<MapToMerge> others, const LandmarksConfig& config) {
+MapsMerge merge_all(LandmarkMap map, const std::vector<MapToMerge>& others, const LandmarksConfig& config) {
   MapsMerge all{std::move(map), std::vector<PlacedMap>(others.size())};
   const auto add = [&](std::size_t i, MapMerge merged) {
-    all.placed[i] = {merged.map_from_other, merged.pairs, merged.refusal};
     all.map = std::move(merged.map);
+    all.placed[i] = static_cast<PlacedMap&&>(merged);
   };
   for (std::size_t i = 0; i < others.size(); ++i) {
     if (others[i].is_copy) add(i, merge_copies(std::move(all.map), others[i].map, config));
