@@ -615,8 +615,9 @@ bool is_doubtful(const Frame& frame) {
     case EpipolarOutcome::off:
       break;
   }
-  constexpr double kFew = 0.25;
-  return known_share(frame.disparity) < kFew;
+  constexpr double kFew = 0.25;  // of what is no sky
+  const double sky = share_of(frame.disparity.reject, [](Reject r) { return has(r, Reject::sky); });
+  return known_share(frame.disparity) < kFew * (1 - sky);
 }
 
 std::vector<Finding> united(const std::vector<std::vector<Finding>>& of_pairs) {

@@ -163,6 +163,10 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
            cues.confidence.empty() ? all_trusted.data() : cues.confidence.row(y), in_floor.data(),
            behind.free_floor_px(), behind.barrier_px()},
           config.margin, width, space.row(y));
+      for (int x = 0; x < width; ++x) {
+        if (has(cues.disparity.reject(x, y), Reject::sky) && cues.objects(x, y) == ObjectId::none)
+          space(x, y) = ObstacleLabel::sky;
+      }
     }
   });
   return space;

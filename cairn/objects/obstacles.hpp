@@ -15,7 +15,7 @@
 namespace cairn {
 
 /// The class of a pixel. The values are those of space.png.
-enum class ObstacleLabel : std::uint8_t { unknown = 0, floor = 128, obstacle = 255 };
+enum class ObstacleLabel : std::uint8_t { unknown = 0, sky = 64, floor = 128, obstacle = 255 };
 
 struct ObstaclesConfig {
   float max_height = 2.0F;  // m above the floor, 0.01 … 100; higher things do not obstruct
@@ -45,7 +45,7 @@ struct ObstacleCues {
 /// walls; without either: nearer than infinity) by more than config.margin, with a disparity more likely right
 /// than wrong. floor: outside of objects, in a superpixel with at least a fifth of its pixels known and three
 /// fifths of these on the floor, except for pixels that are off the floor themselves. Holes in such a
-/// superpixel are floor too. Everything else is unknown.
+/// superpixel are floor too. sky: rejected as such. Everything else is unknown.
 Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
                                      const GroundConfig& config, const Exec& exec);
 

@@ -35,6 +35,8 @@ Reject reasons_in_force(const Config& config, bool external_disparity) {
   });
   add(config.ground.source != GroundSource::off, Reject::below_ground);
   add(config.speckle.size > 0, Reject::speckle);
+  add(config.pipeline.method == Method::region_tree && config.ground.source != GroundSource::off,
+      Reject::sky);
   return all;
 }
 

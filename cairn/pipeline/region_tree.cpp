@@ -5,6 +5,7 @@
 #include <cairn/core/future.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/refine_objects.hpp>
+#include <cairn/objects/sky.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <cairn/stereo/confidence.hpp>
 #include <utility>
@@ -91,7 +92,11 @@ Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Ru
                                              in.right, disparity_bias_trees(), exec));
   frame.objects = stage("locate", locate(std::move(frame.objects), frame.disparity, frame.ground, rig, exec));
 
-  // Other obstacles, and free floor.
+  // The sky, other obstacles, and free floor.
+  const SkyCues of_sky{in.left.gray, frame.confidence, frame.ground, superpixels.labels,
+                       frame.objects.labels};
+  frame.disparity = stage("reject_sky", reject_sky(std::move(frame.disparity), of_sky, rig, exec));
+  frame.confidence = without_holes(std::move(frame.confidence), frame.disparity.reject);
   const ObstacleCues seen{frame.disparity, surface_disparity_px, frame.confidence,    frame.ground,
                           background,      superpixels.labels,   frame.objects.labels};
   frame.space = stage("label_obstacles", label_obstacles(seen, rig, config.ground, exec));

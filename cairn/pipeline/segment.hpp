@@ -31,7 +31,7 @@ struct Frame : StereoResult {
   Segmentation groups{};
   Objects objects{};
   // Obstacles for a robot, whether objects or not.
-  Image<ObstacleLabel> space{};              // obstacle, floor or unknown
+  Image<ObstacleLabel> space{};              // obstacle, floor, sky or unknown
   std::vector<RejectedObstacle> left_out{};  // obstacles that are not objects, nearest first, and why
 };
 

@@ -46,7 +46,8 @@ void judge_pair(const Frame& frame, const ReliabilityInputs& evidence, Witnesses
   std::int64_t denied = 0;
   const View<const Reject> reject = some_rows<Reject>(frame.disparity.reject);
   for (int y = 0; y < reject.height(); ++y) {
-    for (int x = 0; x < reject.width(); ++x) denied += reject(x, y) == Reject::left_right ? 1 : 0;
+    for (int x = 0; x < reject.width(); ++x)
+      denied += (reject(x, y) & ~Reject::sky) == Reject::left_right ? 1 : 0;
   }
   if (both.matched + denied == 0) {
     seen.stereo = 0.0F;

@@ -108,4 +108,12 @@ Image<float> estimate_confidence(const Matches& matches, const DisparityMap& dis
   return confidence;
 }
 
+Image<float> without_holes(Image<float> confidence, View<const Reject> reject) {
+  for (int y = 0; y < confidence.height(); ++y) {
+    std::transform(reject.row(y), reject.row(y) + reject.width(), confidence.row(y), confidence.row(y),
+                   [](Reject r, float c) { return r == Reject::none ? c : 0.0F; });
+  }
+  return confidence;
+}
+
 }  // namespace cairn

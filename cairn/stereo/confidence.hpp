@@ -41,4 +41,7 @@ inline constexpr int kConfidenceWindow = 13;
 Image<float> estimate_confidence(const Matches& matches, const DisparityMap& disparity,
                                  const ConfidenceModel& model, const Exec& exec);
 
+/// The same, 0 where a disparity was rejected since. `confidence` may be empty.
+Image<float> without_holes(Image<float> confidence, View<const Reject> reject);
+
 }  // namespace cairn

@@ -23,6 +23,7 @@ enum class Reject : std::uint16_t {
   below_ground = 32,
   speckle = 64,
   no_data = 128,
+  sky = 256,
 };
 
 /// Name, text and colour of a reason.
@@ -39,6 +40,7 @@ struct Reason {
 // clang-format off
 inline constexpr std::array kReasons{
     Reason{Reject::no_data, "no_data", "no data", {25, 25, 25}, "no value in the external disparity map"},
+    Reason{Reject::sky, "sky", "sky", {170, 215, 250}, "sky: free, and infinitely far"},
     Reason{Reject::border, "border", "border", {60, 60, 60}, "no candidate inside the right image"},
     Reason{Reject::below_ground, "below_ground", "below ground", {205, 185, 255}, "below the floor: a reflection"},
     Reason{Reject::speckle, "speckle", "speckle", {255, 240, 200}, "a small island of disparity"},
@@ -68,6 +70,9 @@ constexpr Reject operator|(Reject a, Reject b) {
 }
 constexpr Reject operator&(Reject a, Reject b) {
   return static_cast<Reject>(static_cast<std::uint16_t>(a) & static_cast<std::uint16_t>(b));
+}
+constexpr Reject operator~(Reject a) {
+  return static_cast<Reject>(~static_cast<std::uint16_t>(a) & 0xFFFFU);
 }
 constexpr Reject& operator|=(Reject& a, Reject b) {
   return a = a | b;

@@ -4,6 +4,7 @@
 #include <cairn/image/noise.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/refine_objects.hpp>
+#include <cairn/objects/sky.hpp>
 #include <cairn/regions/choose_objects.hpp>
 #include <cairn/regions/grow_near_to_far.hpp>
 #include <cairn/regions/grow_statistical.hpp>
@@ -96,6 +97,19 @@ struct ArgumentOf<ObstacleCues> {
                               superpixels.labels, objects.labels});
   }
   [[nodiscard]] const ObstacleCues& get() const { return *cues; }
+};
+template <>
+struct ArgumentOf<SkyCues> {
+  std::optional<SkyCues> cues;
+  void take(CallArguments& given) {
+    const auto& left = given.value().cast<const LoadedImage&>();
+    const auto confidence = given.value().cast<View<const float>>();
+    const auto& ground = given.value().cast<const Ground&>();
+    const auto& superpixels = given.value().cast<const Superpixels&>();
+    cues.emplace(SkyCues{left.gray(), confidence, ground, superpixels.labels,
+                         given.value().cast<const Objects&>().labels});
+  }
+  [[nodiscard]] const SkyCues& get() const { return *cues; }
 };
 /// Two images of the same size, valid for the configuration. The source of the ground is irrelevant here.
 template <>
@@ -312,6 +326,7 @@ void bind_objects(py::module_& m) {
         return refine_objects(std::move(objects), disparity, left, right, disparity_bias_trees(), exec);
       });
   stage(m, "locate", &locate);
+  stage(m, "reject_sky", &reject_sky);
   stage(m, "label_obstacles", &label_obstacles);
 }
 

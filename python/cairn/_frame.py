@@ -38,7 +38,7 @@ class Frame:
         "int32, object id of each pixel; 0 = none. `frame.objects_map == object.id` is a mask",
         lambda self: self.objects.labels)
     objects: Objects = doc("Objects, nearest first")
-    space: NDArray[numpy.uint8] = doc("uint8, class of each pixel: 255 = obstacle, object or not; 128 = floor; 0 = unknown")
+    space: NDArray[numpy.uint8] = doc("uint8, class of each pixel: 255 = obstacle, object or not; 128 = floor; 64 = sky; 0 = unknown")
     left_out: List[LeftOut] = doc("list of LeftOut: obstacles that are not objects, nearest first, and why")
     floor_frame: Optional[FloorFrame] = doc(
         "floor frame, in metres, a FloorFrame; None without a rig or a ground",

@@ -267,10 +267,15 @@ def locate(objects: Objects, disparity: DisparityLike, ground: Ground, rig: RigL
     with a rig and a ground also the box on the floor. Returns Objects."""
 
 
+def reject_sky(disparity: DisparityLike, left: ImageLike, confidence: DisparitiesLike, ground: Ground,
+               superpixels: Superpixels, objects: Objects, rig: RigLike = None) -> DisparityMap:
+    """Rejects the disparities of the sky, outside of objects. segment() then sets their confidence to 0."""
+
+
 def label_obstacles(objects: Objects, disparity: DisparityLike, confidence: DisparitiesLike, ground: Ground,
                 background: Background, superpixels: Superpixels, surface_disparity_px: DisparitiesLike,
                 rig: RigLike = None) -> NDArray[numpy.uint8]:
-    """The class of each pixel: (H, W) uint8, 255 = obstacle, 128 = floor, 0 = unknown. surface_disparity_px: from
+    """The class of each pixel: (H, W) uint8, 255 = obstacle, 128 = floor, 64 = sky, 0 = unknown. surface_disparity_px: from
     floor_under_reflections()."""
 
 

@@ -16,7 +16,7 @@ CHECKS = " ".join(name for name, *_ in _cairn.CHECKS)
 STAGES = f"""correct_epipolar match refine_subpixel {CHECKS} combine
     noise_sigma select_textured fit_ground likely_ground reject_below_ground reject_speckles fit_background
     floor_under_reflections superpixel_edges hint_objects cut_superpixels grow_merge_tree estimate_confidence choose_objects superpixels groups
-    measure refine_objects locate label_obstacles rejected_obstacles""".split()
+    measure refine_objects locate reject_sky label_obstacles rejected_obstacles""".split()
 PAPER_STAGES = f"""match refine_subpixel {CHECKS} combine noise_sigma
     fit_ground reject_below_ground reject_speckles label_floor segment_disparity segment_intensity fuse measure
     locate estimate_confidence label_obstacles rejected_obstacles""".split()
@@ -61,6 +61,19 @@ def test_distances_have_an_interval_and_boxes_are_on_the_floor(sample):
     assert cairn.floor_frame(frame.ground.plane, frame.rig).camera_height_m == floor.camera_height_m
     on_floor = np.array(floor.floor_from_camera) @ [*nearest.position_in_camera_m, 1]
     assert on_floor[:2] == pytest.approx(box.centre_in_floor_m[:2], abs=0.4)
+
+
+@pytest.mark.parametrize("place", ["street", "yard", "lawn"])
+def test_the_sky_is_free_and_no_obstacle(source, place):
+    folder = source / "data/outdoors" / place
+    pair, calibration = cairn.load_pair(folder / "left.png", folder / "right.png"), cairn.load_calibration(folder / "calib.txt")
+    frame = cairn.segment(*pair, calibration)
+    sky = (frame.reject & cairn.Reject.sky) != 0
+    assert same(sky, frame.space == 64) and np.isnan(frame.disparity[sky]).all() and (frame.confidence[sky] == 0).all()
+    infinitely_far = np.isnan(cairn.load_disparity(folder / "disp_left.png")) & (cairn.load_labels(folder / "objects.png") == 0)
+    assert sky[infinitely_far].mean() > 0.9 and infinitely_far[sky].mean() > 0.98
+    frame = cairn.segment(*pair, calibration, ground={"source": "off"})
+    assert (frame.reject & cairn.Reject.sky == 0).all() and (frame.space != 64).all()
 
 
 def test_obstacles_are_reported_whether_objects_or_not(sample):

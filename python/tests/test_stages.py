@@ -72,6 +72,8 @@ def by_hierarchy(sample):
     objects = cairn.refine_objects(objects, disparity, sample.left, sample.right)
     objects = cairn.locate(objects, disparity, ground, rig)
     confidence = cairn.estimate_confidence(matches, disparity)
+    disparity = cairn.reject_sky(disparity, sample.left, confidence, ground, superpixels, objects, rig)
+    confidence = np.where(disparity.reject == 0, confidence, np.float32(0))
     space = cairn.label_obstacles(objects, disparity, confidence, ground, background, superpixels, seen, rig)
     assert same(space, sample.frame.space)
     regions = {"superpixels": cairn.superpixel_regions(superpixels, sample.left), "groups": groups}

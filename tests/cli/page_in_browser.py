@@ -22,7 +22,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
 REASONS = {1: "border", 2: "left-right", 4: "not unique", 8: "flat", 16: "no texture", 32: "below ground", 64: "speckle",
-           128: "no data"}
+           128: "no data", 256: "sky"}
 
 
 class Page(PageTest):
@@ -115,8 +115,9 @@ class Page(PageTest):
             shares = {name: 100 * sum(kinds) / len(space) for name, kinds in (
                 ("obstacle: object", (s == 255 and i > 0 for s, i in zip(space, ids))),
                 ("obstacle: no object", (s == 255 and i == 0 for s, i in zip(space, ids))),
-                ("floor", (s == 128 for s in space)), ("unknown", (s == 0 for s in space)))}
-            self.assertGreater(min(shares.values()), 0)
+                ("floor", (s == 128 for s in space)), ("sky", (s == 64 for s in space)),
+                ("unknown", (s == 0 for s in space)))}
+            self.assertGreater(min(share for name, share in shares.items() if name != "sky"), 0)
             shown = self.legend("space")
             self.assertEqual(list(shown), list(shares))
             for name, share in shares.items():
@@ -368,7 +369,7 @@ class Page(PageTest):
                                        up[0] * right + up[1] * down + up[2] * metres + up[3], delta=0.021)
                 self.assertIn(f"confidence\n{maps['confidence'].getpixel((x, y)) / 255:.2f}", text)
             space = maps["space"].getpixel((x, y))
-            self.assertIn("space\n" + ("floor" if space == 128 else "unknown" if space == 0 else
+            self.assertIn("space\n" + ("floor" if space == 128 else "sky" if space == 64 else "unknown" if space == 0 else
                                        "obstacle: object" if object_id else "obstacle: no object"), text)
             if object_id:
                 seen["object"] += 1

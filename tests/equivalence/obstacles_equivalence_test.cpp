@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/target.hpp>
+#include <cmath>
 #include <limits>
 
 #include "support/grids.hpp"
@@ -47,6 +48,8 @@ struct Scene {
         confidence(x, y) = static_cast<float>(noise.uniform());
         superpixels(x, y) = RegionId{piece};
         objects(x, y) = ObjectId{noise.uniform() < 0.1 ? 1 : 0};
+        if (std::isnan(disparity.disparity_px(x, y)) && noise.uniform() < 0.3)
+          disparity.reject(x, y) = Reject::sky;
       }
     }
   }

@@ -79,6 +79,7 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
       is = is_floor(x, y)      ? ObstacleLabel::floor
            : is_obstacle(x, y) ? ObstacleLabel::obstacle
                                : ObstacleLabel::unknown;
+      if (has(cues.disparity.reject(x, y), Reject::sky)) is = ObstacleLabel::sky;
       if (cues.objects(x, y) != ObjectId::none) is = ObstacleLabel::obstacle;
     }
   }

@@ -477,8 +477,9 @@
   const kHole = '#24272b', kBlink = '#ff3df2';
   const {reasons, ramp} = run.look;
   const disparityImage = buffers(panels.disparity.canvases[0]);
-  const colours = {valid: new Uint32Array(256), hole: new Uint32Array(256), key: ''};
+  const colours = {valid: new Uint32Array(256), hole: null, key: ''};
   const range = {low: 1, high: 255};  // of the values present, 1 … 255
+  const kAllReasons = reasons.reduce((all, {bit}) => all | bit, 0);
   const reasonOf = (bits) => reasons.find(({bit}) => bits & bit) ?? null;
   const pixelsOf = (value) => {
     const d = newest.stats?.num_disparities;
@@ -494,13 +495,14 @@
       const colour = ramp[Math.round(share * (ramp.length - 1))];
       colours.valid[v] = pixel(state.reason ? mixed(colour, kHole, 0.78) : colour);
     }
-    for (let bits = 0; bits < 256; ++bits) {
+    colours.hole ??= new Uint32Array(kAllReasons + 1);
+    for (let bits = 0; bits <= kAllReasons; ++bits) {
       const colour = reasonOf(bits)?.colour ?? kHole;
       colours.hole[bits] = !state.reason ? pixel(colour)
         : bits & state.reason ? pixel(state.phase ? kBlink : mixed(kBlink, kHole, 0.65)) : pixel(mixed(colour, kHole, 0.7));
     }
   }
-  const histogram = new Uint32Array(256), holes = new Uint32Array(256);
+  const histogram = new Uint32Array(256), holes = new Uint32Array(kAllReasons + 1);
   function paintDisparity(frame, again = false) {
     const {disparity, reject} = frame;
     if (!disparity) return;
@@ -519,7 +521,7 @@
         ++histogram[v];
         continue;
       }
-      const why = bits ? bits[i] & 255 : 0;
+      const why = bits ? bits[i] & kAllReasons : 0;
       pixels[i] = hole[why];
       ++holes[why];
     }
@@ -559,7 +561,7 @@
     const all = shown.disparity.disparity.values.length || 1;
     let hole = 0;
     const counts = new Map(reasons.map(({bit}) => [bit, 0]));
-    for (let bits = 0; bits < 256; ++bits) {
+    for (let bits = 0; bits <= kAllReasons; ++bits) {
       hole += holes[bits];
       const first = holes[bits] ? reasonOf(bits) : null;
       if (first) counts.set(first.bit, counts.get(first.bit) + holes[bits]);

@@ -225,9 +225,10 @@
   }
 
   const kScan = '#f2d16b', kSeen = '#23282d';
-  const kSpaces = [['obstacle: object', '#d3632c'], ['obstacle: no object', '#f2d16b'], ['floor', '#2b9c8d'], ['unknown', kNothing]];
+  const kSpaces = [['obstacle: object', '#d3632c'], ['obstacle: no object', '#f2d16b'], ['floor', '#2b9c8d'], ['sky', '#aad7fa'], ['unknown', kNothing]];
   const kFloor = 2;
-  const spaceOf = ({space, objects}, i) => (space[i] === 255 ? (objects?.[i] > 0 ? 0 : 1) : space[i] === 128 ? kFloor : 3);
+  const kLabels = {128: kFloor, 64: 3};  // of space.png; 255: obstacle
+  const spaceOf = ({space, objects}, i) => (space[i] === 255 ? (objects?.[i] > 0 ? 0 : 1) : kLabels[space[i]] ?? 4);
 
   /** All of the space, or one class of it. */
   function paintSpace(out, maps, only = null) {

@@ -121,6 +121,16 @@ TEST(LabelSpace, AnObjectIsAnObstacleWithItsHoles) {
   EXPECT_EQ(room.space()(45, 55), ObstacleLabel::obstacle);
 }
 
+TEST(LabelSpace, WhatIsRejectedAsSkyIsSky) {
+  Room room;
+  room.disparity.disparity_px(15, 5) = kNan;
+  room.disparity.reject(15, 5) = Reject::sky;
+  EXPECT_EQ(room.space()(15, 5), ObstacleLabel::sky);
+  EXPECT_EQ(room.space()(16, 5), ObstacleLabel::obstacle) << "the wall";
+  room.objects(15, 5) = ObjectId{1};
+  EXPECT_EQ(room.space()(15, 5), ObstacleLabel::obstacle) << "an object goes first";
+}
+
 TEST(LabelSpace, WithoutAnyPlaneAllThatIsNearerThanInfinityIsAnObstacle) {
   Room room;
   room.ground = {};

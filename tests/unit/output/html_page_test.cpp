@@ -95,9 +95,10 @@ TEST(HtmlPage, PacksEveryReasonAndTheDontCare) {
 }
 
 TEST(HtmlPage, PacksTheSpaceWithTheValuesOfItsFile) {
-  constexpr std::array kAll{ObstacleLabel::unknown, ObstacleLabel::floor, ObstacleLabel::obstacle};
+  constexpr std::array kAll{ObstacleLabel::unknown, ObstacleLabel::sky, ObstacleLabel::floor,
+                            ObstacleLabel::obstacle};
   const auto space =
-      filled<ObstacleLabel>([&](int x, int y) { return kAll[static_cast<std::size_t>(x * y % 3)]; });
+      filled<ObstacleLabel>([&](int x, int y) { return kAll[static_cast<std::size_t>(x * y % 4)]; });
   PageFrame frame;
   frame.space = space;
   const Json maps = Json::parse(encode_frame(frame).maps);

@@ -13,8 +13,9 @@ namespace {
 
 TEST(ReasonsInForce, AreThoseOfTheEnabledChecks) {
   constexpr Reject kAlways = Reject::border | Reject::left_right | Reject::below_ground;
-  EXPECT_EQ(reasons_in_force(Config{}), kAlways | Reject::speckle);
-  EXPECT_EQ(reasons_in_force(Config{}, true), Reject::no_data | Reject::below_ground | Reject::speckle);
+  EXPECT_EQ(reasons_in_force(Config{}), kAlways | Reject::speckle | Reject::sky);
+  EXPECT_EQ(reasons_in_force(Config{}, true),
+            Reject::no_data | Reject::below_ground | Reject::speckle | Reject::sky);
   Config config = Config::paper();
   EXPECT_TRUE(has(reasons_in_force(config), Reject::no_texture));
   set(config, "texture.threshold", "-1");
