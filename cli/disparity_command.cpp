@@ -62,8 +62,8 @@ std::string describe(const StereoResult& scene, const LoadedFrame& loaded, doubl
   std::string all = "disparity on " +
                     percent(static_cast<double>(valid) / static_cast<double>(reject.size().area())) +
                     " of the pixels, " + text_of("%.1f ms", milliseconds) + "\n";
-  all += refusals_table(count_refusals(scene.disparity, loaded.left.gray,
-                                       reasons_in_force(loaded.config) & ~Reject::sky, exec));
+  all += refusals_table(
+      count_refusals(scene.disparity, loaded.left.gray, reasons_in_force(loaded.config), exec));
   if (const std::string epipolar = cli::describe(scene.epipolar); !epipolar.empty()) all += epipolar + "\n";
   if (scene.ground.plane) {
     const GroundPlane p = *scene.ground.plane;
@@ -97,7 +97,7 @@ int estimate(const DisparityOptions& options) {
   if (!options.confidence.empty()) output::save_confidence(options.confidence, scene.confidence);
   if (!options.view.empty()) {
     const Image<Rgb> picture =
-        output::draw_disparity(scene.disparity, loaded.rig, reasons_in_force(loaded.config) & ~Reject::sky);
+        output::draw_disparity(scene.disparity, loaded.rig, reasons_in_force(loaded.config));
     io::save_png(options.view, picture.view());
   }
   if (!options.ply.empty()) {

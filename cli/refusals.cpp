@@ -31,7 +31,6 @@ Refusals count_refusals(const DisparityMap& map, View<const Gray> left, Reject i
     plain_pixels += std::count(plain.row(y), plain.row(y) + plain.width(), Reject::no_texture);
   all.dark_or_plain = static_cast<double>(plain_pixels) / area;
   for (const auto& reason : kRejects) {
-    if (!has(in_force, reason.value)) continue;
     std::int64_t count = 0;
     std::int64_t untextured = 0;
     for (int y = 0; y < map.reject.height(); ++y) {
@@ -41,6 +40,7 @@ Refusals count_refusals(const DisparityMap& map, View<const Gray> left, Reject i
         untextured += is_refused && plain(x, y) != Reject::none ? 1 : 0;
       }
     }
+    if (!is_listed(reason.value, in_force, count)) continue;
     all.counts.push_back(
         {std::string(reason.name), static_cast<double>(count) / area,
          count > 0 ? static_cast<double>(untextured) / static_cast<double>(count) : std::nan("")});

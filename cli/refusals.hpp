@@ -15,7 +15,7 @@ struct RefusalCount {
   double dark_or_plain = 0;  // share of these without texture above the noise
 };
 struct Refusals {
-  std::vector<RefusalCount> counts;  // of each reason in force, in the order of their bits
+  std::vector<RefusalCount> counts;  // of each listed reason, in the order of their bits
   double dark_or_plain = 0;          // of all pixels
 };
 Refusals count_refusals(const DisparityMap& map, View<const Gray> left, Reject in_force, const Exec& exec);

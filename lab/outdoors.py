@@ -16,138 +16,107 @@ import sys
 import numpy as np
 
 import cairn
+from accuracy import TrueFrame, share
+from fit import frames_in
+from report import number, percent, table
+from studies import disparity_of, logistic
 
 TRUSTED, NEAR_PX = 0.7, 2.0  # kTrusted and kNear_px there
 NEAR_BY = 12.0  # m
-LEAST_PX = 200
 DISTANCES = [0, 2, 4, 7, 12, np.inf]  # m
-FIT_WORLDS = 500
+FIT_WORLDS, RIDGE = 500, 1e-4
 SIZES = ["320x240", "621x188", "640x360", "640x480"]
 
 
-def frames_in(folder):
-    return sorted(path.parent for path in pathlib.Path(folder).glob("*/left.png"))
-
-
-class Seen:
+class Seen(TrueFrame):
     """A frame and its truth. A pixel is sky if it is infinitely far."""
 
     def __init__(self, folder):
-        left, right = cairn.load_pair(folder / "left.png", folder / "right.png")
-        calibration = cairn.load_calibration(folder / "calib.txt")
-        self.rig = calibration.rig
-        self.left = left
-        self.right, self.calibration = right, calibration
-        self.frame = cairn.segment(left, right, calibration)
-        self.disparity = np.nan_to_num(cairn.load_disparity(folder / "disp_left.png"))
+        super().__init__(folder)
+        self.rig = self.calibration.rig
+        self.frame = self.segment(None)
+        with np.errstate(invalid="ignore"):
+            self.depth = self.rig.focal_px * self.rig.baseline_m / (self.truth_px + self.rig.doffs_px)
         self.is_ground = cairn.load_labels(folder / "ground.png") == 255
-        self.ids = ids = cairn.load_labels(folder / "objects.png")
-        self.is_object = (ids > 0) & (ids < 255)
-        self.depth = self.rig.focal_px * self.rig.baseline_m / np.maximum(self.disparity + self.rig.doffs_px, 1e-6)
-        self.is_sky = (self.disparity <= 0) & (ids == 0) & ~self.is_ground
+        self.is_sky = np.isnan(self.truth_px) & (self.objects == 0) & ~self.is_ground
 
 
 def superpixels_of(folder):
     """Features as SkyFeatures has them, the share that is sky, and the share of the image, of each superpixel."""
     seen = Seen(folder)
-    before = cairn.disparity(seen.left, seen.right, seen.calibration)  # without the reason sky
+    before = disparity_of(folder, folder, "default")[-1]  # without the reason sky
     if before.ground.plane is None:
         return np.zeros((0, 7))
     labels = seen.frame.superpixels.labels
     count = labels.max() + 1
     pixels = np.bincount(labels.ravel(), minlength=count)
 
-    def share(values):
+    def mean(values):
         return np.bincount(labels.ravel(), weights=values.ravel(), minlength=count) / pixels
 
-    grey = seen.left if seen.left.ndim == 2 else seen.left @ np.array([77, 150, 29]) / 256
     rows, columns = np.mgrid[: labels.shape[0], : labels.shape[1]]
     plane, infinity = before.ground.plane, -seen.rig.doffs_px
     above = plane.a * columns + plane.b * rows + plane.c <= infinity
     near = (np.nan_to_num(before.disparity, nan=-np.inf) > infinity + NEAR_PX) & (before.confidence >= TRUSTED)
     top = np.isin(np.arange(count), labels[0])
-    return np.column_stack([share(grey / 255), np.full(count, grey.mean() / 255), share(above), share(near), top,
-                            share(seen.is_sky), pixels / labels.size])
+    return np.column_stack([mean(seen.grey / 255), np.full(count, seen.grey.mean() / 255), mean(above), mean(near), top,
+                            mean(seen.is_sky), pixels / labels.size])
 
 
 def fit(frames, pool):
-    from scipy.optimize import minimize  # only here
-
     rows = np.concatenate(pool.map(superpixels_of, frames, chunksize=4))
-    inputs = np.column_stack([np.ones(len(rows)), rows[:, :5]])
-    sky, weight = rows[:, 5], rows[:, 6]
-
-    def loss(weights):
-        log_odds = inputs @ weights
-        value = (weight * (np.logaddexp(0, log_odds) - sky * log_odds)).sum() + 1e-4 * (weights[1:] ** 2).sum()
-        gradient = inputs.T @ (weight * (1 / (1 + np.exp(-log_odds)) - sky))
-        return value, gradient + 2e-4 * np.append(0, weights[1:])
-
-    found = minimize(loss, np.zeros(6), jac=True, method="L-BFGS-B", options={"maxiter": 2000})
-    print(f"{len(frames)} frames, {len(rows)} superpixels, loss {found.fun:.2f}")
+    found = logistic(np.column_stack([np.ones(len(rows)), rows[:, :5]]), rows[:, 5], rows[:, 6], RIDGE)
+    print(f"{len(frames)} frames, {len(rows)} superpixels")
     names = ["bias", "brightness", "image_brightness", "above_horizon", "near", "touches_the_top"]
-    print("  ".join(f"{name} {value:.2f}" for name, value in zip(names, found.x)))
+    print("  ".join(f"{name} {value:.2f}" for name, value in zip(names, found)))
 
 
 def counts_of(folder):
+    """Counts of pixels, and (distance, IoU) of each true object."""
     seen = Seen(folder)
-    space, sky = seen.frame.space, seen.frame.space == 64
-    near_by = (seen.disparity > 0) & (seen.depth < NEAR_BY)
-    ground, floor = seen.is_ground & near_by, (space == 128) & near_by
-    pixels = np.array([1, sky.mean(), sky.sum(), (sky & seen.is_sky).sum(), seen.is_sky.sum(), (seen.is_sky & (space == 255)).sum(),
-                     ground.sum(), (ground & (space == 128)).sum(), (ground & (space == 255)).sum(), floor.sum(),
-                     (seen.is_object & near_by).sum(), (seen.is_object & near_by & (space == 255)).sum()], float)
-    return pixels, found_at(seen)
+    space, sky, near_by = seen.frame.space, seen.frame.space == 64, seen.depth < NEAR_BY
+    ground, floor, objects = seen.is_ground & near_by, (space == 128) & near_by, (seen.objects > 0) & near_by
+    pixels = np.array([space.size, sky.sum(), (sky & seen.is_sky).sum(), seen.is_sky.sum(), (seen.is_sky & (space == 255)).sum(),
+                       ground.sum(), (ground & (space == 128)).sum(), (ground & (space == 255)).sum(), floor.sum(),
+                       objects.sum(), (objects & (space == 255)).sum()])
+    scores = cairn.object_errors(seen.frame.objects_map, seen.objects).truth
+    return pixels, [(np.nanmedian(seen.depth[seen.objects == score.id]), score.iou) for score in scores]
 
 
-def found_at(seen):
-    """(distance, its IoU with the best of our objects) of each true object of at least 200 px."""
-    ours, objects = seen.frame.objects_map, []
-    for k in np.unique(seen.ids[seen.is_object]):
-        true = seen.ids == k
-        if true.sum() < LEAST_PX:
-            continue
-        best = max((np.sum(true & (ours == i)) / np.sum(true | (ours == i)) for i in np.unique(ours[true]) if i), default=0)
-        objects.append((np.median(seen.depth[true]), best))
-    return objects
+def pixels_row(name, counts):
+    (pixels, sky, right, true, as_obstacle, ground, as_floor, ground_obstacle, floor, near_by, as_near) = np.sum(counts, axis=0)
+    shares = [share(right, sky), share(right, true), share(as_obstacle, true), share(as_floor, floor), share(as_floor, ground),
+              share(ground_obstacle, ground), share(as_near, near_by)]
+    return [name, *map(percent, shares), number(100 * share(sky - right, pixels), ".2f")]
+
+
+def found_cell(iou):
+    found = (iou >= 0.5).sum()
+    return f"{found}/{len(iou)} = {number(share(found, len(iou)), '.2f')}, {number(share((iou >= 0.75).sum(), len(iou)), '.2f')}"
+
+
+def distance_row(name, objects):
+    distance, iou = np.array(objects).T
+    return [name, *(found_cell(iou[(distance >= low) & (distance < high)]) for low, high in zip(DISTANCES, DISTANCES[1:]))]
 
 
 def main():
     data, yardstick = (pathlib.Path(folder) for folder in sys.argv[1:3])
     rendered = data / "rendered"
-    outdoors = [frame for size in SIZES for frame in frames_in(rendered / "train_outdoor" / size)]
+    outdoors, reported = ([frame for size in SIZES for frame in frames_in(rendered / name / size)]
+                          for name in ("train_outdoor", "validate_outdoor"))
     rooms = frames_in(rendered / "train/320x240") + frames_in(rendered / "dev/320x240")
     with multiprocessing.Pool(2) as pool:
         if "--fit" in sys.argv:
             return fit(outdoors + rooms + frames_in(sys.argv[4])[:FIT_WORLDS], pool)
-        print("| % of the pixels | sky: precision | recall | called obstacle | ground nearer than 12 m: precision | recall | called obstacle | objects nearer than 12 m: obstacle | all frames: wrongly sky |")
-        print("|---|---:|---:|---:|---:|---:|---:|---:|---:|")
-        reported = [frame for size in SIZES for frame in frames_in(rendered / "validate_outdoor" / size)]
-        sets = {"train_outdoor": outdoors, "yardstick outdoors": frames_in(yardstick / "outdoors"), "validate_outdoor": reported,
-                "rooms of the fit": rooms, "yardstick indoors": frames_in(yardstick / "indoors")}
-        by_distance = {}
-        for name, frames in sets.items():
-            pixels, objects = zip(*pool.map(counts_of, frames, chunksize=4))
-            by_distance[name] = np.array(sum(objects, []))
-            (count, share, sky, right, true, as_obstacle, ground, as_floor, ground_obstacle, floor, near_by,
-             as_near) = np.sum(pixels, axis=0)
-
-            def percent(part, whole):
-                return f"{100 * part / whole:.1f}" if whole else "–"
-
-            wrong = share * (1 - right / sky) if sky else 0
-            print(f"| {name} | " + " | ".join([percent(right, sky), percent(right, true), percent(as_obstacle, true),
-                  percent(as_floor, floor), percent(as_floor, ground), percent(ground_obstacle, ground),
-                  percent(as_near, near_by), f"{100 * wrong / count:.2f}"]) + " |", flush=True)
-    print("\n| found at IoU 0.5, at 0.75 | " + " | ".join(f"{a} … {b} m" for a, b in zip(DISTANCES, DISTANCES[1:])) + " |")
-    print("|---|" + "---|" * (len(DISTANCES) - 1))
-    for name in list(sets)[:3]:
-        distance, best = by_distance[name].T
-        cells = []
-        for low, high in zip(DISTANCES, DISTANCES[1:]):
-            there = best[(distance >= low) & (distance < high)]
-            cells.append(f"{(there >= 0.5).sum()}/{len(there)} = {(there >= 0.5).mean():.2f}, {(there >= 0.75).mean():.2f}" if len(there) else "–")
-        print(f"| {name} | " + " | ".join(cells) + " |")
+        outside = {"train_outdoor": outdoors, "yardstick outdoors": frames_in(yardstick / "outdoors"), "validate_outdoor": reported}
+        inside = {"rooms of the fit": rooms, "yardstick indoors": frames_in(yardstick / "indoors")}
+        measured = {name: list(zip(*pool.map(counts_of, frames, chunksize=4))) for name, frames in (outside | inside).items()}
+    print(table(["% of the pixels", "sky: precision", "recall", "called obstacle", "ground nearer than 12 m: precision", "recall",
+                 "called obstacle", "objects nearer than 12 m: obstacle", "of all pixels, wrongly sky"],
+                [pixels_row(name, counts) for name, (counts, _) in measured.items()]))
+    print(table(["found at IoU 0.5, at 0.75", *(f"{low} … {high} m" for low, high in zip(DISTANCES, DISTANCES[1:]))],
+                [distance_row(name, sum(measured[name][1], [])) for name in outside]))
 
 
 if __name__ == "__main__":

@@ -148,8 +148,20 @@ def signs_of(left, right, config, px):
     return np.ones(px.shape), margin, cost, np.sqrt(share_in_window(jumps)), np.sqrt(share_in_window(np.isnan(px)))
 
 
+def logistic(x, share_right, weight, ridge=0):
+    """The maximum-likelihood parameters of a logistic regression, by Newton's method. The first column of x is 1;
+    ridge: penalty for the squares of the other parameters."""
+    numbers = np.zeros(x.shape[1])
+    penalty = np.diag([0, *[2 * ridge] * (len(numbers) - 1)])
+    for _ in range(12):
+        p = 1 / (1 + np.exp(-x @ numbers))
+        hessian = (x * (weight * p * (1 - p))[:, None]).T @ x + penalty
+        numbers += np.linalg.solve(hessian, x.T @ (weight * (share_right - p)) - penalty @ numbers)
+    return numbers
+
+
 def fitted(sets, preset):
-    """The maximum-likelihood parameters, by Newton's method, of one pixel of eleven. Data sets have equal weight."""
+    """The parameters of one pixel of eleven. Data sets have equal weight."""
     signs, right, weights = [], [], []
     random = np.random.default_rng(1)
     for _, *of in sets:
@@ -163,12 +175,7 @@ def fitted(sets, preset):
         count = sum(map(len, samples[1]))
         signs, right, weights = signs + samples[0], right + samples[1], weights + [np.full(count, 1 / count)]
     x, is_right, weight = map(np.concatenate, (signs, right, weights))
-    numbers = np.zeros(len(SIGNS))
-    for _ in range(12):
-        p = 1 / (1 + np.exp(-x @ numbers))
-        hessian = (x * (weight * p * (1 - p))[:, None]).T @ x
-        numbers += np.linalg.solve(hessian, x.T @ (weight * (is_right - p)))
-    return numbers
+    return logistic(x, is_right, weight)
 
 
 def print_reliability(name, preset, *of):

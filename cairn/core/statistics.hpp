@@ -11,6 +11,11 @@
 
 namespace cairn {
 
+/// 1/(1 + e^−x) in steps of 1/4096. The last bit of exp() may differ between processors; rounding removes it.
+inline float likelihood(float log_odds) {
+  return static_cast<float>(std::floor(4096.0 / (1.0 + std::exp(-double{log_odds})) + 0.5) / 4096.0);
+}
+
 /// The smallest value that at least `share` (0 … 1) of the values do not exceed; NaN without values. Ignores
 /// NaN.
 inline double percentile(std::vector<double> values, double share) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <cairn/core/statistics.hpp>
 #include <cairn/objects/sky.hpp>
 #include <cairn/regions/runs.hpp>
-#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
@@ -25,10 +26,8 @@ struct Sums {
 
 float sky_probability(const SkyFeatures& of) {
   // Fitted by lab/outdoors.py.
-  const float log_odds = -8.72F + 12.17F * of.brightness - 14.06F * of.image_brightness +
-                         5.97F * of.above_horizon - 7.19F * of.near + (of.touches_the_top ? 2.92F : 0.0F);
-  // In steps: the last bit of exp() may differ between processors.
-  return static_cast<float>(std::floor(4096 / (1 + std::exp(-double{log_odds})) + 0.5) / 4096);
+  return likelihood(-8.72F + 12.17F * of.brightness - 14.06F * of.image_brightness +
+                    5.97F * of.above_horizon - 7.19F * of.near + (of.touches_the_top ? 2.92F : 0.0F));
 }
 
 DisparityMap reject_sky(DisparityMap disparity, const SkyCues& cues, const std::optional<StereoRig>& rig,
@@ -76,6 +75,9 @@ DisparityMap reject_sky(DisparityMap disparity, const SkyCues& cues, const std::
                          share(of.above, of.pixels), share(of.near, of.pixels), of.touches_the_top});
     if (probability > kSky) sky_grey[i] = static_cast<int>(of.brightness / of.pixels);
   }
+  // Indoors, nothing is left to do.
+  if (std::all_of(sky_grey.begin(), sky_grey.end(), [](int grey) { return grey == kNoSky; }))
+    return disparity;
   for_each_run(cues.superpixels, exec, [&](const Run& run) {
     const int grey = sky_grey[index(run.label)];
     for (int x = run.first; x < run.last && grey != kNoSky; ++x) {

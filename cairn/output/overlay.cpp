@@ -247,8 +247,7 @@ void draw_legend(Image<Rgb>& canvas, int left, const DisparityMap& map, Disparit
   int y = bar_top + bar_height + kLegendRow;
   write("valid" + percent(valid), {left + 10, y});
   for (std::size_t i = 0; i < kReasons.size(); ++i) {
-    const bool is_expected = has(in_force, kReasons[i].bit) && kReasons[i].bit != Reject::sky;  // not indoors
-    if (!is_expected && counts[i] == 0) continue;
+    if (!is_listed(kReasons[i].bit, in_force, counts[i])) continue;
     y += kLegendRow;
     drawing::fill(canvas, {left + 10, y - 10, 14, 12}, kReasons[i].colour);
     write(std::string(kReasons[i].label) + percent(counts[i]), {left + 32, y});

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/core/statistics.hpp>
 #include <cairn/regions/choose_objects.hpp>
 #include <cairn/regions/superpixel_regions.hpp>
 #include <cmath>
 
 namespace cairn {
-namespace {
-
-/// 1/(1 + e^−x) in steps of 1/4096. The last bit of exp() may differ between processors; rounding removes it.
-float likelihood(float odds_logarithm) {
-  return static_cast<float>(std::floor(4096.0 / (1.0 + std::exp(-double{odds_logarithm})) + 0.5) / 4096.0);
-}
-
-}  // namespace
-
 ChosenObjects choose_objects(const MergeTree& tree, const FittedTrees& whole_object,
                              const ChoiceLimits& limits, const Exec& exec) {
   return choose_by_scores(tree, score_nodes(tree, whole_object, limits, exec), limits);

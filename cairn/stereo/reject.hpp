@@ -81,4 +81,10 @@ constexpr bool has(Reject set, Reject bit) {
   return (set & bit) != Reject::none;
 }
 
+/// Whether legends and tables list a reason: if it is in force or occurs. Sky is listed only where it occurs, since
+/// there is none indoors, nor before the objects are known.
+constexpr bool is_listed(Reject reason, Reject in_force, std::int64_t pixels) {
+  return pixels > 0 || has(in_force & ~Reject::sky, reason);
+}
+
 }  // namespace cairn

@@ -476,10 +476,10 @@
 
   const kHole = '#24272b', kBlink = '#ff3df2';
   const {reasons, ramp} = run.look;
-  const disparityImage = buffers(panels.disparity.canvases[0]);
-  const colours = {valid: new Uint32Array(256), hole: null, key: ''};
-  const range = {low: 1, high: 255};  // of the values present, 1 … 255
   const kAllReasons = reasons.reduce((all, {bit}) => all | bit, 0);
+  const disparityImage = buffers(panels.disparity.canvases[0]);
+  const colours = {valid: new Uint32Array(256), hole: new Uint32Array(kAllReasons + 1), key: ''};
+  const range = {low: 1, high: 255};  // of the values present, 1 … 255
   const reasonOf = (bits) => reasons.find(({bit}) => bits & bit) ?? null;
   const pixelsOf = (value) => {
     const d = newest.stats?.num_disparities;
@@ -495,7 +495,6 @@
       const colour = ramp[Math.round(share * (ramp.length - 1))];
       colours.valid[v] = pixel(state.reason ? mixed(colour, kHole, 0.78) : colour);
     }
-    colours.hole ??= new Uint32Array(kAllReasons + 1);
     for (let bits = 0; bits <= kAllReasons; ++bits) {
       const colour = reasonOf(bits)?.colour ?? kHole;
       colours.hole[bits] = !state.reason ? pixel(colour)
