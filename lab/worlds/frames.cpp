@@ -66,6 +66,17 @@ void write_frame(const WorldFrame& frame, const fs::path& folder) {
           static_cast<std::uint16_t>(std::clamp(std::lround(256 * truth.disparity_px(x, y)), 0L, 65535L));
   }
   io::save_png(unfinished / "disp_left.png", View<const std::uint16_t>(disparity));
+  if (frame.world.scene.has_projector) {
+    const Rig& rig = frame.world.scene.rig;
+    Image<std::uint16_t> depth_mm(truth.ids.size());
+    for (int y = 0; y < depth_mm.height(); ++y) {
+      for (int x = 0; x < depth_mm.width(); ++x) {
+        const float z = rig.focal_px * rig.baseline_m / std::max(truth.disparity_px(x, y), 1e-6F);
+        depth_mm(x, y) = z < 65 ? static_cast<std::uint16_t>(std::lround(1000 * z)) : std::uint16_t{0};
+      }
+    }
+    io::save_png(unfinished / "depth.png", View<const std::uint16_t>(depth_mm));
+  }
   io::save_png(unfinished / "objects.png", View<const std::uint8_t>(truth.ids));
   io::save_png(unfinished / "occlusion.png", View<const std::uint8_t>(truth.occlusion));
   io::save_png(unfinished / "ground.png", View<const std::uint8_t>(truth.ground));

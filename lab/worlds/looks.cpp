@@ -451,6 +451,17 @@ void scatter_marks(Look& look, Dice& dice) {
   }
 }
 
+float spots_at(Vec2 direction) {
+  constexpr float kSquares = 60, kPresent = 0.7F, kRadius = 0.24F;
+  const Vec2 at{kSquares * direction.x, kSquares * direction.y};
+  const int i = cell(at.x), j = cell(at.y);
+  const std::uint32_t h = hash(i, j, 21, 0);
+  if (share_of(h) >= kPresent) return 0;
+  const float dx = at.x - static_cast<float>(i) - 0.25F - 0.5F * share_of(h, 8),
+              dy = at.y - static_cast<float>(j) - 0.25F - 0.5F * share_of(h, 16);
+  return std::clamp(2 * (1 - std::sqrt(dx * dx + dy * dy) / kRadius), 0.0F, 1.0F);
+}
+
 Surface surface_at(const Look& look, Vec2 uv, Vec3 point) {
   Vec3 albedo = albedo_at(look, uv, point);
   if (look.wear > 0)

@@ -71,6 +71,9 @@ void scatter_marks(Look& look, Dice& dice);
 /// Outdoors: asphalt, paving, gravel, lawn.
 Look ground_look(Dice& dice);
 
+/// 0 … 1: the spots of a projector in a direction, given as ahead = 1; at most one in each square of 1 / 60.
+float spots_at(Vec2 direction);
+
 /// `point` is in the coordinates of the thing, so that patterns of the volume move with it.
 Surface surface_at(const Look& look, Vec2 uv, Vec3 point);
 

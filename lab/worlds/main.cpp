@@ -31,6 +31,7 @@ struct Arguments {
   std::string size = "320x240";
   std::string use = "fit";
   std::string out;
+  bool has_projector = false;
 };
 
 /// Calls `work` for each number from first to last, on all threads.
@@ -64,8 +65,11 @@ void write_frames(const Arguments& arguments) {
     std::array<char, 16> name{};
     std::snprintf(name.data(), name.size(), "world_%05d", i);
     const fs::path folder = fs::path(arguments.out) / name.data();
-    if (!fs::exists(folder))
-      write_frame(make_frame(make_world(arguments.world, i), arguments.samples), folder);
+    if (fs::exists(folder)) return;
+    World world = make_world(arguments.world, i);
+    world.scene.has_projector = arguments.has_projector;
+    world.sensor.is_grey = world.sensor.is_grey || arguments.has_projector;
+    write_frame(make_frame(std::move(world), arguments.samples), folder);
   });
 }
 
@@ -157,6 +161,8 @@ int run(int argc, char** argv) {
   };
   CLI::App* const frames =
       declare_drawn("frames", "writes one folder per world; folders that exist are left as they are");
+  frames->add_flag("--projector", arguments.has_projector,
+                   "grey cameras and a projector of spots, with depth.png (mm) as of a depth camera");
   CLI::App* const yardstick = declare("yardstick", "writes the frames that choices are measured by");
   const CLI::App* const laboratory = declare("laboratory", "writes the four sequences of docs/paper.md");
   declare_drawn("sheet", "draws left images and ids");

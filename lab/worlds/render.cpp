@@ -195,6 +195,7 @@ class Light {
     seen.body = hit.body, seen.point = hit.point, seen.normal = hit.normal, seen.albedo = surface.albedo;
     const auto [soft, hard] = falling_on(at, hit.normal, draws);
     seen.soft = soft, seen.rest = times(surface.albedo, hard);
+    if (scene_.has_projector) seen.rest = seen.rest + projected_on(at, hit.normal) * surface.albedo;
     if (!reflects || surface.gloss <= 0) return seen;
     // Schlick's approximation; a rough surface mirrors less clearly.
     const float grazing = 1 + dot(direction, hit.normal);
@@ -223,6 +224,20 @@ class Light {
     const std::vector<Vec3>& own = body.own.empty() ? body.mesh.points : body.own;
     const Vec3 point = w * own[t[0]] + hit.u * own[t[1]] + hit.v * own[t[2]];
     return surface_at(body.looks.at(body.mesh.part[hit.triangle] & 3U), at, point);
+  }
+
+  /// The light of the projector's spots: as strong as the light from everywhere at 4 m.
+  [[nodiscard]] float projected_on(Vec3 at, Vec3 normal) const {
+    const Rig& rig = scene_.rig;
+    const Vec3 from = at - rig.eye;
+    const float z = dot(from, rig.forward);
+    if (z <= 0) return 0;
+    const float spot = spots_at({dot(from, rig.right) / z, dot(from, rig.down) / z});
+    const Vec3 back = -1 * unit(from);
+    const float facing = dot(normal, back);
+    if (spot <= 0 || facing <= 0 || !tracer_.is_free(at, back, length(from) - kOffset)) return 0;
+    const Vec3& around = scene_.ambient;
+    return spot * facing * (around.x + around.y + around.z) / 3 * std::min(16 / dot(from, from), 16.0F);
   }
 
   /// What falls on a point: lamps with soft shadows and ambient light where nothing near blocks it; the sun.

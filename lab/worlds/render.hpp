@@ -50,7 +50,8 @@ struct Scene {
   Vec3 ambient;  // light from everywhere
   Vec3 sky_low;  // seen where nothing is hit
   Vec3 sky_high;
-  float reach_m = 1.5F;  // ambient light is blocked by what is nearer
+  float reach_m = 1.5F;        // ambient light is blocked by what is nearer
+  bool has_projector = false;  // of infrared spots, at the left camera, as depth cameras have it
   std::uint64_t seed = 0;
 };
 

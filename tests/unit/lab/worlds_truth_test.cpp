@@ -186,6 +186,44 @@ TEST(Laboratory, ShowsItsObjectsInEveryFrameFromAMovingRobot) {
   }
 }
 
+TEST(Projector, LightsTheSamePointsForBothCameras) {
+  WorldOptions options = small(0);
+  options.size = {320, 240};  // a spot needs a pixel
+  World world = make_world(options, 3);
+  world.scene.rig.right_row_offset_px = 0;
+  const Rendered dark = render(world.scene, 4);
+  world.scene.has_projector = true;
+  const Rendered lit = render(world.scene, 4);
+  const auto spot = [&](const Picture& with, const Picture& without, int x, int y) {
+    return grey(with, x, y) - grey(without, x, y);
+  };
+  int spots = 0, shared = 0, visible = 0;
+  for (int y = 0; y < lit.left.size.height; ++y) {
+    for (int x = 0; x < lit.left.size.width; ++x) {
+      EXPECT_EQ(lit.truth.disparity_px(x, y), dark.truth.disparity_px(x, y));
+      const int right = static_cast<int>(std::lround(static_cast<float>(x) - lit.truth.disparity_px(x, y)));
+      if (spot(lit.left, dark.left, x, y) < 0.05F) continue;
+      ++spots;
+      if (lit.truth.occlusion(x, y) != 0 || right < 1) continue;
+      ++visible;
+      float seen = 0;
+      for (const int beside : {-1, 0, 1})
+        seen = std::max(seen, spot(lit.right, dark.right, std::min(right + beside, 319), y));
+      shared += seen > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(spots, 100);
+  EXPECT_GT(share(shared, visible), 0.9);
+  world.sensor.is_grey = true;
+  const support::TemporaryFolder folder;
+  write_frame(make_frame(world, 1), folder.path() / "world");
+  const Image<float> depth = io::load_depth(folder.path() / "world" / "depth.png");
+  const StereoRig rig = *io::load_calibration(folder.path() / "world" / "calib.txt").rig;
+  const auto point = rig.point_in_camera_m(0, 0, lit.truth.disparity_px(160, 200));
+  ASSERT_TRUE(point);
+  EXPECT_NEAR(depth(160, 200), point->z, 2e-3);
+}
+
 TEST(Worlds, AreWrittenAsADataSetOfFrames) {
   const support::TemporaryFolder folder;
   const WorldFrame frame = make_frame(make_world(small(0), 3), 1);
