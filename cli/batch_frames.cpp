@@ -94,7 +94,8 @@ class Planner {
 
   void add_folder(const std::string& input, const std::string& name) {
     const std::vector<io::FrameFiles> found = io::find_frames(input);
-    if (std::none_of(found.begin(), found.end(), [](const io::FrameFiles& files) { return files.right; }))
+    if (std::none_of(found.begin(), found.end(),
+                     [](const io::FrameFiles& files) { return files.right || files.given; }))
       (void)right_of(found.front());
     std::error_code unknown;
     const bool is_one = found.size() == 1 && fs::equivalent(found.front().folder, input, unknown);
@@ -113,6 +114,10 @@ class Planner {
       how["right"] = whole(*files.right);
     } else if (!files.expected_right.empty()) {
       how["right"] = whole(files.expected_right);
+    }
+    if (files.given) {
+      how["given"] = whole(files.given->path);
+      if (files.given->depth_units_per_m) how["depth_units_per_m"] = *files.given->depth_units_per_m;
     }
     std::optional<fs::path> calib = files.calib;
     if (!inputs_.calib.empty()) calib = inputs_.calib;
@@ -250,6 +255,11 @@ BatchFrame BatchReader::read(const PlannedFrame& frame) {
   files.folder = files.left.parent_path();
   if (const std::string right = text_at(frame, "right"); !right.empty()) files.right = right;
   if (const std::string calib = text_at(frame, "calib"); !calib.empty()) files.calib = calib;
+  if (const std::string given = text_at(frame, "given"); !given.empty()) {
+    files.given = io::GivenMap{given};
+    if (const double units = value_at(frame, "depth_units_per_m", 0.0); units > 0)
+      files.given->depth_units_per_m = units;
+  }
   files.grey_cameras = value_at(frame, "grey_cameras", false);
   InputOptions input;
   input.config = config_;

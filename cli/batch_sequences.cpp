@@ -87,7 +87,11 @@ struct SequenceReader::State {
     BatchFrame made;
     made.stamp_ns = frame.stamp.ns;
     made.loaded.left = std::move(frame.left);
-    made.loaded.right = std::move(frame.right);
+    if (frame.disparity_px.empty()) {
+      made.loaded.right = std::move(frame.right);
+    } else {
+      made.loaded.given = with_holes_marked(frame.disparity_px, {});
+    }
     made.loaded.rig = from.rig();
     ResolvedConfig resolved = resolve(config, from.disparities());
     made.loaded.config = std::move(resolved.config);

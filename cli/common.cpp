@@ -109,6 +109,19 @@ Exec make_exec(const ExecOptions& options) {
   return exec;
 }
 
+void add_map_options(CLI::App& app, io::MapOptions& maps) {
+  app.add_option("--disparity", maps.disparity,
+                 "disparity map (.png, .pfm, .npy) instead of matching, or a folder of maps named like the "
+                 "frames; a right image checks it")
+      ->type_name("FILE|DIR");
+  app.add_option("--depth-image", maps.depth,
+                 "depth image instead of matching, or a folder of them: 16-bit .png in mm, .pfm or .npy in m")
+      ->type_name("FILE|DIR");
+  app.add_option("--depth-units", maps.depth_units_per_m,
+                 "units per metre of 16-bit depth images; default: 1000 (mm), in folders of TUM RGB-D 5000")
+      ->type_name("N");
+}
+
 void add_layout_option(CLI::App& app, std::string& layout) {
   app.add_option("--layout", layout, "side_by_side or top_bottom: each image file holds both images")
       ->type_name("NAME");
@@ -157,38 +170,25 @@ io::FrameFiles frame_of_files(const InputOptions& options) {
   return files;
 }
 
-/// The map of a frame: the single file, or the one with its name in a folder of maps or results. nullopt if
-/// the folder has none.
-std::optional<fs::path> map_of(const io::FrameFiles& files, const std::string& given) {
-  std::error_code ignored;
-  if (!fs::is_directory(given, ignored)) return given;
-  for (const char* ending : {".png", ".pfm", ".npy", "/disparity.png", "/disparity.pfm"}) {
-    fs::path path = fs::path(given) / (files.name + ending);
-    if (fs::is_regular_file(path, ignored)) return path;
+/// The frames with their maps, if the command takes them.
+std::vector<io::FrameFiles> with_maps(std::vector<io::FrameFiles> frames, const InputOptions& options) {
+  if (options.takes_maps) {
+    io::give_maps(frames, options.maps);
+  } else {
+    for (io::FrameFiles& files : frames) files.given.reset();
   }
-  return std::nullopt;
+  return frames;
 }
 
-[[noreturn]] void refuse_without_map(const io::FrameFiles& files, const std::string& given) {
-  throw Error("--disparity " + given + ": has no map of the frame " + files.name + ", expected " +
-              files.name + ".png, .pfm or .npy");
+bool has_maps(const InputOptions& options) {
+  return !options.maps.disparity.empty() || !options.maps.depth.empty();
 }
 
-/// Reports once what concerns all frames.
-void check_maps(const std::vector<io::FrameFiles>& frames, const InputOptions& options) {
-  std::error_code ignored;
-  if (frames.size() > 1 && !fs::is_directory(options.disparity, ignored)) {
-    throw Error("--disparity " + options.disparity + ": one map for the " + std::to_string(frames.size()) +
-                " frames of " + options.left + "; give a folder of maps, or one frame");
-  }
-  if (std::none_of(frames.begin(), frames.end(),
-                   [&](const io::FrameFiles& files) { return map_of(files, options.disparity); }))
-    refuse_without_map(frames.front(), options.disparity);
-}
-
-void check_rights(const std::vector<io::FrameFiles>& frames) {
-  if (std::none_of(frames.begin(), frames.end(), [](const io::FrameFiles& files) { return files.right; }))
-    (void)right_of(frames.front());
+void check_rights(const std::vector<io::FrameFiles>& frames, bool takes_maps) {
+  const auto is_complete = [&](const io::FrameFiles& files) {
+    return files.right || (takes_maps && files.given);
+  };
+  if (std::none_of(frames.begin(), frames.end(), is_complete)) (void)right_of(frames.front());
 }
 
 /// The frames of files that hold both images.
@@ -207,8 +207,7 @@ std::vector<io::FrameFiles> frames_with_both(const InputOptions& options) {
     frames.back().right = frames.back().left;
     frames.back().layout = layout;
   }
-  if (!options.disparity.empty()) check_maps(frames, options);
-  return frames;
+  return with_maps(std::move(frames), options);
 }
 
 /// Recognises MCAP by its first bytes, since the reader may not be built in.
@@ -232,22 +231,18 @@ std::vector<io::FrameFiles> frames_of(const InputOptions& options) {
                 << (alone.size() == 1 ? " frame" : " frames") << " skipped, the first is "
                 << on_one_line(alone.front().filename().string()) << "\n";
     }
-    options.disparity.empty() ? check_rights(frames) : check_maps(frames, options);
-    return frames;
+    if (!has_maps(options)) check_rights(frames, options.takes_maps);
+    return with_maps(std::move(frames), options);
   }
-  if (options.right.empty() && options.disparity.empty() && fs::exists(options.left, ignored)) {
+  if (options.right.empty() && !has_maps(options) && fs::exists(options.left, ignored)) {
     if (is_recording(options.left)) {
       throw Error(options.left + ": is a recording, expected images (cairn record " + options.left +
                   " -o DIR converts it to a folder of frames; cairn follow and cairn live read it directly)");
     }
     throw Error(options.left + ": found a left image, but no right image");
   }
-  if (options.right.empty() && options.disparity.empty()) {
-    throw Error(options.left + ": no such file or folder");
-  }
-  std::vector<io::FrameFiles> frames{frame_of_files(options)};
-  if (!options.disparity.empty()) check_maps(frames, options);
-  return frames;
+  if (options.right.empty() && !has_maps(options)) throw Error(options.left + ": no such file or folder");
+  return with_maps({frame_of_files(options)}, options);
 }
 
 std::vector<std::optional<std::int64_t>> stamps_of(const InputOptions& options,
@@ -277,31 +272,16 @@ io::LoadedPair load_images(const io::FrameFiles& files, const Pool& pool) {
   return io::load_pair(files, pool);
 }
 
-namespace {
-
-DisparityMap load_given(const fs::path& path, Size size, const fs::path& left, const Exec& exec) {
-  const Image<float> values = io::load_disparity(path, exec.pool);
-  if (values.size() != size) {
-    throw Error(path.string() + ": the disparity map is " + text(values.size()) + ", " + left.string() +
-                " is " + text(size));
-  }
-  try {
-    return external_disparity(values, exec);
-  } catch (const Error& error) {
-    throw Error(path.string() + ": " + error.what());
-  }
-}
-
-}  // namespace
-
 LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec) {
   LoadedFrame frame;
-  if (!options.disparity.empty()) {
+  if (files.given) {
     frame.left = files.layout == io::Layout::one ? io::load_picture(files.left, exec.pool)
                                                  : io::load_pair(files, exec.pool).left;
-    const std::optional<fs::path> map = map_of(files, options.disparity);
-    if (!map) refuse_without_map(files, options.disparity);
-    frame.given = load_given(*map, frame.left.gray.size(), files.left, exec);
+  } else if (has_maps(options)) {
+    const bool is_depth = options.maps.disparity.empty();
+    throw Error((is_depth ? "--depth-image " + options.maps.depth : "--disparity " + options.maps.disparity) +
+                ": has no map of the frame " + files.name + ", expected " + files.name +
+                ".png, .pfm or .npy");
   } else {
     io::LoadedPair pair = load_images(files, exec.pool);
     frame.left = std::move(pair.left);
@@ -318,6 +298,17 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
     io::check_search_range(calibration, *calib);
   }
   frame.rig = calibration.rig;
+  if (files.given) {
+    if (files.given->depth_units_per_m) frame.rig = io::rig_of_depth(calibration);
+    const Image<float> values = io::load_given(*files.given, frame.left.gray.size(), frame.rig, exec.pool);
+    frame.given_name =
+        (files.given->depth_units_per_m ? "--depth-image " : "--disparity ") + files.given->path.string();
+    try {
+      frame.given = external_disparity(values, exec);
+    } catch (const Error& error) {
+      throw Error(files.given->path.string() + ": " + error.what());
+    }
+  }
   for (const std::string& remark : calibration.remarks)
     frame.calibration_remarks += "cairn: " + calib->string() + ": " + remark + "\n";
   if (calibration.of_raw_cameras) {

@@ -58,8 +58,9 @@ struct InputOptions {
   std::string right;  // empty with a folder, or with a given disparity
   std::string calib;
   bool scale_calibration = false;
-  std::string layout;  // of files with both images; empty: each has one
-  std::string disparity;
+  std::string layout;       // of files with both images; empty: each has one
+  bool takes_maps = false;  // or depth.png and the like instead of a right image
+  io::MapOptions maps;
   ConfigOptions config;
   io::Cameras cameras = io::Cameras::rectified;  // the kind of images searched for
 };
@@ -67,6 +68,8 @@ struct InputOptions {
 void add_layout_option(CLI::App& app, std::string& layout);
 /// LEFT, RIGHT, --calib, --layout and those of add_config_options().
 void add_input_options(CLI::App& app, InputOptions& options);
+/// --disparity, --depth-image and --depth-units.
+void add_map_options(CLI::App& app, io::MapOptions& maps);
 
 // ---- frames ----
 
@@ -86,6 +89,7 @@ struct LoadedFrame {
   io::LoadedImage left;
   Image<Gray> right;                  // empty with a given disparity
   std::optional<DisparityMap> given;  // instead of the right image
+  std::string given_name;             // its option and file, for messages
   std::optional<StereoRig> rig;
   Config config;
   std::string preset;

@@ -39,15 +39,20 @@ std::vector<std::string> SensorInput::given() const {
 }
 
 void add_sensor_options(CLI::App& app, SensorInput& input) {
-  app.add_option("--odometry", input.odometry,
-                 "wheel odometry: table of t_s, v_m_per_s, omega_rad_per_s, or poses of TUM or KITTI")
-      ->type_name("FILE");
-  app.add_option("--imu", input.imu, "gyroscope rates in the form of EuRoC")->type_name("FILE");
+  app.add_option(
+         "--odometry", input.odometry,
+         "wheel odometry: table of t_s, v_m_per_s, omega_rad_per_s, or poses of TUM or KITTI; or a topic "
+         "(nav_msgs/Odometry), of the recording if SOURCE is one")
+      ->type_name("FILE|ros2:TOPIC");
+  app.add_option("--imu", input.imu, "gyroscope rates in the form of EuRoC, or a topic (sensor_msgs/Imu)")
+      ->type_name("FILE|ros2:TOPIC");
   app.add_option("--poses", input.poses, "known camera poses (TUM), used instead of motion estimation")
       ->type_name("FILE");
-  app.add_option("--scan", input.scan,
-                 "laser scans to check disparities: table of stamp, angle_min, angle_increment, r0, ...")
-      ->type_name("FILE");
+  app.add_option(
+         "--scan", input.scan,
+         "laser scans to check disparities: table of stamp, angle_min, angle_increment, r0, ..., or a "
+         "topic (sensor_msgs/LaserScan)")
+      ->type_name("FILE|ros2:TOPIC");
   app.add_option("--map", input.map, "map of landmarks to use and extend; created if absent")
       ->type_name("FILE.db");
   app.add_flag("--read-only", input.map_read_only, "no changes to the map");

@@ -16,7 +16,8 @@ void keep_inputs(const std::vector<fs::path>& outputs, const io::FrameFiles& fil
   for (const fs::path& output : outputs) {
     for (const fs::path& input :
          {files.left, files.right.value_or(fs::path()), files.calib.value_or(fs::path()),
-          fs::path(options.calib), fs::path(options.disparity), fs::path(options.config.file)}) {
+          files.given ? files.given->path : fs::path(), fs::path(options.calib),
+          fs::path(options.maps.disparity), fs::path(options.maps.depth), fs::path(options.config.file)}) {
       std::error_code missing;
       if (fs::equivalent(output, input, missing))
         throw Error(output.string() + ": is read by this run, expected another file to write");

@@ -47,7 +47,11 @@ std::unique_ptr<input::MotionPriors> load_priors(const OdometryOptions& options,
   const auto named = [](const std::string& file) {
     return file.empty() ? std::nullopt : std::optional<std::filesystem::path>(file);
   };
-  return live::open_priors(named(options.wheels), named(options.imu), options.input.source, source);
+  std::vector<std::string> assumptions;
+  auto priors = live::open_priors(named(options.wheels), named(options.imu), options.input.source, source,
+                                  &assumptions);
+  for (const std::string& assumed : assumptions) std::cerr << "cairn: " << assumed << "\n";
+  return priors;
 }
 
 /// Totals of the frames, for the last line.
@@ -79,11 +83,12 @@ bool add(Run& run, const TrackedFrame& step, bool keep_lost) {
 class CameraMotion {
  public:
   CameraMotion(const StereoRig& rig, const input::MotionPriors* priors, Run& run)
-      : rig_(rig), priors_(priors), run_(run) {}
+      : rig_(rig), rig_of_frames_(rig), priors_(priors), run_(run) {}
 
   TrackedFrame next(const input::SequenceFrame& frame, const FollowConfig& config, const Exec& exec) {
-    StereoResult scene = estimate_disparity(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb),
-                                            rig_, config.segmentation, exec);
+    FrameInput in{{frame.left.gray, frame.left.rgb}, frame.right};
+    if (!frame.disparity_px.empty()) in = {in.left, {}, with_holes_marked(frame.disparity_px, exec)};
+    StereoResult scene = estimate_disparity(std::move(in), {rig_of_frames_, config.segmentation, exec});
     const auto start = live::Clock::now();
     if (before_ && clock_step(*before_, frame.stamp) == ClockStep::set_back) before_.reset();
     if (!before_) {
@@ -111,6 +116,7 @@ class CameraMotion {
 
  private:
   StereoRig rig_;
+  std::optional<StereoRig> rig_of_frames_;
   const input::MotionPriors* priors_;
   Run& run_;
   OdometryState state_;
@@ -200,9 +206,12 @@ int estimate(const OdometryOptions& options) {
 Work declare_odometry(CLI::App& app) {
   auto options = std::make_shared<OdometryOptions>();
   add_source_options(app, options->input);
-  app.add_option("--odometry", options->wheels, "wheel odometry: t_s,v_m_per_s,omega_rad_per_s, or poses")
-      ->type_name("FILE");
-  app.add_option("--imu", options->imu, "gyroscope rates in the form of EuRoC's data.csv")->type_name("FILE");
+  app.add_option("--odometry", options->wheels,
+                 "wheel odometry: t_s,v_m_per_s,omega_rad_per_s, or poses; or a topic of the recording")
+      ->type_name("FILE|ros2:TOPIC");
+  app.add_option("--imu", options->imu,
+                 "gyroscope rates in the form of EuRoC's data.csv, or a topic of the recording")
+      ->type_name("FILE|ros2:TOPIC");
   app.add_option("--form", options->form, "form of the poses: tum, kitti or euroc")
       ->type_name("NAME")
       ->capture_default_str();

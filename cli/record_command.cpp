@@ -53,7 +53,12 @@ class Recording {
     io::make_folder(folder);
     // The left image last: a folder without one is no frame, so an interrupted run leaves complete frames
     // only.
-    io::save_png(folder / "right.png", frame.right.view());
+    // What would be processed: with both, the pair would be matched again.
+    if (frame.disparity_px.empty()) {
+      io::save_png(folder / "right.png", frame.right.view());
+    } else {
+      io::save_disparity(folder / "disparity.pfm", frame.disparity_px);
+    }
     if (sequence_.rig()) {
       io::save_calibration(folder / "calib.txt", *sequence_.rig(), sequence_.image_size(),
                            sequence_.disparities(), sequence_.ground());
@@ -90,8 +95,8 @@ int record(const RecordOptions& options) {
     while (const std::optional<input::SequenceFrame> frame = sequence->next()) {
       progress.at(recording.count(), frame->name);
       recording.add(*frame);
-      const auto changes =
-          watch.next(StereoPair::from(frame->left.gray, frame->right), sequence->rig(), range, exec);
+      if (!frame->disparity_px.empty()) continue;
+      const auto changes = watch.next(input::pair_of(*frame), sequence->rig(), range, exec);
       if (changes.empty()) continue;
       progress.clear();
       std::cerr << changes_text(frame->name, changes);

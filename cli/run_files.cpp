@@ -131,6 +131,8 @@ Json RunFiles::summary_json() const {
   for (const auto& [reason, count] : totals_.refusals) refusals[reason] = count;
   Json reliability = Json::object();
   for (const auto& [name, sum] : totals_.reliability) reliability[name] = sum.first / sum.second;
+  // Without objects nothing has shown that they would be found. (docs/stages/reliability.md)
+  if (totals_.confirmed.empty()) reliability.erase("value");
   reliability["unreliable_frames"] = totals_.unreliable;
   Json remarks = Json::array();
   for (const input::SourceRemark& remark : source_.remarks())

@@ -3,8 +3,32 @@
 #include "run_sinks.hpp"
 
 #include <cairn/live/queued_sink.hpp>
+#include <iostream>
 
 namespace cairn::cli {
+namespace {
+
+/// Prints once what the run assumes about other sensors, when these have had the time to say something.
+class SensorNotice : public live::Sink {
+ public:
+  explicit SensorNotice(const live::Runner& runner) : runner_(runner) {}
+  void offer(const live::LiveFramePtr& /*frame*/) override {
+    if (++frames_ == 30) print();
+  }
+  void finish() override {
+    if (frames_ < 30) print();
+  }
+
+ private:
+  void print() const {
+    for (const std::string& assumed : runner_.assumptions()) std::cerr << "cairn: " << assumed << "\n";
+  }
+
+  const live::Runner& runner_;
+  int frames_ = 0;
+};
+
+}  // namespace
 
 void add_run_options(CLI::App& app, RunOptions& options) {
   add_source_options(app, options.source);
@@ -35,6 +59,7 @@ RunSinks::RunSinks(const RunOptions& options, live::Runner& runner, const input:
     add_slow(*files_, "-o", "frames not written, because the disk was too slow");
   if (lines_) add_slow(*lines_, "stdout", "lines dropped, because they were read too slowly");
   runner.add(console);
+  add(std::make_unique<SensorNotice>(runner));
   runner.add(*recorder_);
   add(make_view(options.view, runner, *recorder_, source, preset));
   add(make_ros2_sink(options.ros2, source));

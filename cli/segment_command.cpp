@@ -180,8 +180,7 @@ void remove_older_page(const fs::path& folder) {
 class GivenCheck {
  public:
   /// Throws Error if the map is certainly none of these images; a finding if it is suspect.
-  std::optional<Finding> check(const LoadedFrame& loaded, const io::FrameFiles& files,
-                               const std::string& name, const Exec& exec) {
+  std::optional<Finding> check(const LoadedFrame& loaded, const io::FrameFiles& files, const Exec& exec) {
     if (!loaded.given || !files.right) return std::nullopt;
     const int index = frames_++;
     if (!was_refused_ && index >= RigWatch::kFrames && index % RigWatch::kEvery != 0) return std::nullopt;
@@ -193,7 +192,7 @@ class GivenCheck {
     was_refused_ = found && found->severity == Severity::broken;
     if (!was_refused_) return found;
     const FindingInfo& known = info(found->kind);
-    throw Error("--disparity " + name + ": " + std::string(known.name) + ": " + found->says + ". " +
+    throw Error(loaded.given_name + ": " + std::string(known.name) + ": " + found->says + ". " +
                 std::string(known.remedy));
   }
 
@@ -331,7 +330,7 @@ Outcome segment_all(const SegmentOptions& options) {
     std::optional<Finding> of_given;
     try {
       loaded = load(frames[i], options, exec);
-      of_given = given.check(*loaded, frames[i], options.input.disparity, exec);
+      of_given = given.check(*loaded, frames[i], exec);
     } catch (const Error& error) {
       if (frames.size() == 1) throw;
       progress.clear();
@@ -428,10 +427,8 @@ Work declare_segment(CLI::App& app) {
       ->description(
           "preset to start from: default or paper; or a list, e.g. paper,default, each with its "
           "sub-folder of DIR");
-  app.add_option("--disparity", options->input.disparity,
-                 "disparity map (.png, .pfm, .npy) instead of matching, or a folder of maps named like "
-                 "the frames; RIGHT is optional, and checks the map")
-      ->type_name("PATH");
+  options->input.takes_maps = true;
+  add_map_options(app, options->input.maps);
   add_exec_options(app, options->exec);
   app.add_option("-o,--output", options->output,
                  "output folder for objects.json, maps and images (docs/formats.md)")

@@ -53,9 +53,12 @@ void add_source_options(CLI::App& app, SourceInput& input) {
   app.add_option("--layout", input.options.layout,
                  "layout of a video, a camera or images with both images: side_by_side or top_bottom")
       ->type_name("NAME");
-  app.add_option("--topics", input.options.topics,
-                 "image topics of a recording (MCAP) with several stereo pairs")
-      ->type_name("LEFT,RIGHT");
+  app.add_option(
+         "--topics", input.options.topics,
+         "topics of a recording (default: found by type and name) or of ros2: (default: "
+         "left/image_rect,right/image_rect): left and right, or an image and its depth or disparities")
+      ->type_name("A,B");
+  add_map_options(app, input.options.maps);
   app.add_option("--rate", input.options.rate_hz,
                  "frames per second, overriding a video's and replacing missing stamps (default: of the "
                  "source, else 10)")

@@ -120,8 +120,7 @@ class SequenceTrials {
         return std::nullopt;
       }
       try {
-        const TrackedFrame step =
-            follower.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp);
+        const TrackedFrame step = follower.next(input::pair_of(frame), frame.stamp);
         if (step.index > 0) steady.frames.push_back(step.reliability.steadiness);
       } catch (const Error&) {  // settings that contradict each other or the images
         if (tried_ == 0) throw;

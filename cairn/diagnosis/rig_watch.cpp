@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/diagnosis/given_disparity.hpp>
 #include <cairn/diagnosis/rig_watch.hpp>
 #include <utility>
 
@@ -37,9 +38,16 @@ FrameFindings judge(const Frame& frame, View<const Gray> left, View<const Gray> 
 
 std::vector<FindingChange> RigWatch::next(const Frame& frame, View<const Gray> left, View<const Gray> right,
                                           const std::optional<StereoRig>& rig, const Config& config,
-                                          const Exec& exec) {
+                                          const Exec& exec, View<const float> given_px) {
   if (!is_due()) return {};
-  return add(judge(frame, left, right, rig, config, true, exec).list, rig.has_value());
+  const bool is_given = !given_px.empty();
+  std::vector<Finding> found =
+      judge(frame, left, is_given ? View<const Gray>{} : right, rig, config, true, exec).list;
+  if (is_given && !right.empty()) {
+    if (auto of_map = check_given_disparity(given_px, StereoPair::from(left, right), rig, exec))
+      found.push_back(std::move(*of_map));
+  }
+  return add(std::move(found), rig.has_value());
 }
 
 std::vector<FindingChange> RigWatch::next(const StereoPair& pair, const std::optional<StereoRig>& rig,

@@ -34,10 +34,11 @@ class RigWatch {
   static constexpr int kEvery = 100;  // frames
 
   /// To be called with every frame; most calls do nothing. Returns what has changed: new and worse findings, and
-  /// those that are gone. Notes are reported once.
+  /// those that are gone. Notes are reported once. `given_px`: external disparities, which are compared with the pair
+  /// if there is a right image.
   std::vector<FindingChange> next(const Frame& frame, View<const Gray> left, View<const Gray> right,
-                                  const std::optional<StereoRig>& rig, const Config& config,
-                                  const Exec& exec);
+                                  const std::optional<StereoRig>& rig, const Config& config, const Exec& exec,
+                                  View<const float> given_px = {});
   /// The same without segmentation, by the images alone.
   std::vector<FindingChange> next(const StereoPair& pair, const std::optional<StereoRig>& rig,
                                   const MatchConfig& range, const Exec& exec);

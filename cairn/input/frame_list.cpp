@@ -49,7 +49,7 @@ std::vector<std::string> stems_of(const std::vector<fs::path>& files) {
   return names;
 }
 
-/// EuRoC's image names are their stamps.
+/// EuRoC's image names are their stamps in ns, those of TUM RGB-D in s.
 std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>& names) {
   constexpr std::size_t kMinDigits = 16;
   std::vector<Stamp> stamps;
@@ -57,7 +57,8 @@ std::optional<std::vector<Stamp>> stamps_in_names(const std::vector<std::string>
     // A number with leading zeros is a frame number.
     const bool may_be = name.size() >= kMinDigits && name.front() != '0';
     const std::optional<Stamp> stamp = may_be ? parse_stamp(name) : std::nullopt;
-    if (!stamp || !std::all_of(name.begin(), name.end(), io::is_digit)) return std::nullopt;
+    const auto is_of_stamp = [](char c) { return io::is_digit(c) || c == '.'; };
+    if (!stamp || !std::all_of(name.begin(), name.end(), is_of_stamp)) return std::nullopt;
     stamps.push_back(*stamp);
   }
   return stamps;
@@ -323,51 +324,89 @@ FrameList list_two_subfolders(const fs::path& source, const std::vector<io::Fram
   return paired(left, right, pairs, options);
 }
 
+/// Stamps of left images in a folder of their own, which has more of them than there are frames.
+std::optional<Stamps> stamps_among(const fs::path& source, const std::vector<io::FrameFiles>& frames) {
+  Side left = left_side(source, frames.front().left.parent_path());
+  if (!left.stamps) return std::nullopt;
+  std::map<fs::path, Stamp> by_image;
+  for (std::size_t i = 0; i < left.files.size(); ++i) by_image[left.files[i]] = (*left.stamps)[i];
+  Stamps stamps{{}, left.stamps_from};
+  for (const io::FrameFiles& files : frames) stamps.all.push_back(by_image.at(files.left));
+  return stamps;
+}
+
+bool has_map(const io::FrameFiles& files) {
+  return files.given.has_value();
+}
+
+/// Frames in folders of their own; or with depth images or disparities, which then every frame needs.
 FrameList list_frames(const fs::path& source, const std::vector<io::FrameFiles>& frames,
                       const SourceOptions& options) {
-  if (std::none_of(frames.begin(), frames.end(), [](const io::FrameFiles& files) { return files.right; })) {
+  const bool has_maps = std::ranges::any_of(frames, &has_map);
+  const auto is_whole = [&](const io::FrameFiles& files) {
+    return has_maps ? has_map(files) : files.right.has_value();
+  };
+  if (std::ranges::none_of(frames, is_whole)) {
     throw Error(frames.front().left.string() + ": no right image" +
                 (frames.front().expected_right.empty()
                      ? ""
                      : ", expected " + frames.front().expected_right.string()));
   }
   FrameList list;
-  const std::optional<Stamps> stamps = stamps_of(source, names_of(frames));
+  const std::optional<Stamps> stamps =
+      is_in_two_folders(frames.front()) ? stamps_among(source, frames) : stamps_of(source, names_of(frames));
   const double rate = rate_of(options);
   list.stamps_from = stamps ? stamps->from : rate_text(rate);
   list.calib = io::calibration_in(source);
   list.grey_cameras = frames.front().grey_cameras;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (!frames[i].right) {
-      if (options.frames.contains(i))
-        remark(list.remarks, {"left image without a right one", 1, frames[i].name, true, false});
+    if (!is_whole(frames[i])) {
+      if (options.frames.contains(i)) {
+        remark(list.remarks, {has_maps ? "image without a map" : "left image without a right one", 1,
+                              frames[i].name, true, false});
+      }
       continue;
     }
-    list.frames.push_back({frames[i].name, i, frames[i].left, *frames[i].right, frames[i].calib,
-                           stamps ? stamps->all[i] : stamp_at(i, rate), frames[i].layout});
+    list.frames.push_back({frames[i].name, i, frames[i].left, frames[i].right.value_or(fs::path()),
+                           frames[i].calib, stamps ? stamps->all[i] : stamp_at(i, rate), frames[i].layout,
+                           frames[i].given});
   }
   return list;
 }
 
 }  // namespace
 
-std::string skew_text(Stamp left, Stamp right, double max_skew_ms) {
+std::string skew_text(Stamp left, Stamp right, double max_skew_ms, const std::string& what) {
   std::array<char, 128> skew{};
-  std::snprintf(skew.data(), skew.size(),
-                "no left and right image are within %g ms; the first are %g ms apart", max_skew_ms,
+  std::snprintf(skew.data(), skew.size(), " are within %g ms; the first are %g ms apart", max_skew_ms,
                 std::abs(seconds_between(left, right)) * 1000);
-  return std::string(skew.data()) + " (" + stamp_text(left) + " and " + stamp_text(right) +
+  return "no " + what + std::string(skew.data()) + " (" + stamp_text(left) + " and " + stamp_text(right) +
          "): --max-skew MS";
 }
 
 FrameList list_folder(const fs::path& folder, const SourceOptions& options) {
   const bool holds_both = !options.layout.empty();
   const std::optional<fs::path> camera = holds_both ? std::nullopt : euroc_camera_in(folder);
-  if (camera) return finished(list_euroc(*camera, options), options, folder.string());
-  std::vector<io::FrameFiles> frames =
-      holds_both ? io::find_both(folder, io::layout_of(options.layout)) : io::find_frames(folder);
+  if (camera) {
+    if (options.maps.any())
+      throw Error(folder.string() +
+                  ": has EuRoC's raw images, expected rectified ones with --disparity and "
+                  "--depth-image");
+    return finished(list_euroc(*camera, options), options, folder.string());
+  }
+  std::vector<fs::path> alone;
+  std::vector<io::FrameFiles> frames = holds_both ? io::find_both(folder, io::layout_of(options.layout))
+                                                  : io::find_frames(folder, io::Cameras::rectified, &alone);
   sort_by_name(frames);
+  io::give_maps(frames, options.maps);
   const io::FrameFiles& first = frames.front();
+  if (std::ranges::any_of(frames, &has_map)) {
+    FrameList list = list_frames(folder, frames, options);
+    if (!list.calib) list.calib = first.calib;
+    for (const fs::path& image : alone)
+      remark(list.remarks, {"image without a map", 1, image.stem().string(), true, false});
+    return finished(std::move(list), options, folder.string());
+  }
   const bool in_two_folders = is_in_two_folders(first);
   FrameList list =
       in_two_folders ? list_two_subfolders(folder, frames, options) : list_frames(folder, frames, options);

@@ -18,10 +18,11 @@ struct ListedFrame {
   std::string name;
   std::size_t index = 0;
   std::filesystem::path left;
-  std::filesystem::path right;
+  std::filesystem::path right;                 // may be empty where a map is given
   std::optional<std::filesystem::path> calib;  // of this frame
   Stamp stamp;
   io::Layout layout = io::Layout::one;  // otherwise left and right are one file with both images
+  std::optional<io::GivenMap> given = {};
 };
 
 struct FrameList {
@@ -34,7 +35,8 @@ struct FrameList {
 };
 
 /// Why no images are paired, with what would pair the first of them. The stamps are those of the first on either side.
-std::string skew_text(Stamp left, Stamp right, double max_skew_ms);
+std::string skew_text(Stamp left, Stamp right, double max_skew_ms,
+                      const std::string& what = "left and right image");
 
 /// The frames of a folder within options.frames. Throws Error.
 FrameList list_folder(const std::filesystem::path& folder, const SourceOptions& options);

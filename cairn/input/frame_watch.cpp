@@ -14,12 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::uint64_t hash_of(View<const Gray> image) {
+template <class T>
+std::uint64_t hash_of(View<const T> image) {
   constexpr std::uint64_t kFactor = 0x9E3779B97F4A7C15U;
   std::uint64_t hash = 0;
   for (int y = 0; y < image.height(); ++y) {
     const std::string_view row(reinterpret_cast<const char*>(image.row(y)),
-                               static_cast<std::size_t>(image.width()));
+                               static_cast<std::size_t>(image.width()) * sizeof(T));
     hash = (hash ^ std::hash<std::string_view>{}(row)) * kFactor;
   }
   return hash;
@@ -93,9 +94,12 @@ bool FrameWatch::continues(Stamp stamp, const std::string& name, std::vector<Sou
 
 void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks) {
   const Size size = frame.left.gray.size();
-  PreviousFrame now{frame.stamp, frame.name, hash_of(frame.left.gray.view()), hash_of(frame.right.view())};
+  const bool is_given = frame.right.empty();
+  PreviousFrame now{frame.stamp, frame.name, hash_of<Gray>(frame.left.gray),
+                    is_given ? hash_of<float>(frame.disparity_px) : hash_of<Gray>(frame.right)};
   if (!before_) {
     size_ = size;
+    frame_id_ = frame.frame_id;
   } else {
     if (size != size_)
       throw Error(file + ": is " + text(size) + ", expected " + text(size_) + " like the frames before");
@@ -103,8 +107,9 @@ void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<
     const bool left_stands = now.left == before_->left;
     const bool right_stands = now.right == before_->right;
     if (left_stands != right_stands) {
-      remark(remarks, {left_stands ? "left image repeated from the frame before, the right one new"
-                                   : "right image repeated from the frame before, the left one new",
+      const std::string right = is_given ? "depth image" : "right image";
+      remark(remarks, {left_stands ? "left image repeated from the frame before, the " + right + " new"
+                                   : right + " repeated from the frame before, the left one new",
                        1, frame.name, false, false});
     }
   }

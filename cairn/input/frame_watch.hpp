@@ -57,16 +57,18 @@ class FrameWatch {
   /// Error if the size differs from the first frame. `file`: for messages.
   void see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks);
   [[nodiscard]] Size image_size() const { return size_; }
+  [[nodiscard]] const std::string& frame_id() const { return frame_id_; }
 
  private:
   struct PreviousFrame {
     Stamp stamp;
     std::string name;
-    std::uint64_t left = 0;  // hashes of the images
-    std::uint64_t right = 0;
+    std::uint64_t left = 0;   // hashes of the images
+    std::uint64_t right = 0;  // of the given disparities if there is none
   };
   double max_gap_s_;
   Size size_;
+  std::string frame_id_;  // of the first frame
   std::optional<PreviousFrame> before_;
 };
 
@@ -81,6 +83,7 @@ class SourceSequence : public Sequence {
   [[nodiscard]] std::optional<int> disparities() const override { return calibration_.says.num_disparities; }
   [[nodiscard]] const KnownGround& ground() const override { return calibration_.says.ground; }
   [[nodiscard]] const io::Rectifier* rectifier() const override { return calibration_.rectifier.get(); }
+  [[nodiscard]] std::string frame_id() const override { return watch_.frame_id(); }
   [[nodiscard]] const std::vector<SourceRemark>& remarks() const override { return remarks_; }
   [[nodiscard]] const std::string& ended_early() const override { return ended_early_; }
 

@@ -8,10 +8,12 @@
 #include <cairn/io/frame_names.hpp>
 #include <cairn/io/raster.hpp>
 #include <deque>
+#include <type_traits>
 
 #include <cairn/input/frame_list.hpp>
 #include <cairn/input/frame_watch.hpp>
 #include <cairn/input/mcap_topics.hpp>
+#include <cairn/input/ros_depth.hpp>
 #include <cairn/input/ros_pictures.hpp>
 #include <cairn/io/names_and_numbers.hpp>
 #include <cairn/ros/from_step.hpp>
@@ -33,10 +35,12 @@ struct Side {
   ros::McapChannel channel;
   std::size_t seen = 0;
 };
-/// An image waiting for that of the other camera.
+/// An image waiting for that of the other camera, or for its depth.
 struct WaitingImage {
   std::size_t index = 0;
   std::optional<io::Raster> image;  // nullopt if it cannot be decoded
+  std::optional<RosDepth>
+      depth;  // instead, where a depth or disparity image takes the place of the right one
   std::string trouble;
   std::string frame_id;
 };
@@ -50,14 +54,20 @@ class McapSequence : public SourceSequence {
         pool_(std::move(pool)),
         reader_(file),
         pairing_(options.max_skew_ms, [this](std::size_t side, Pairing::WaitingItem&& alone) {
-          remark(remarks_, {side == 0 ? "left image without a right one" : "right image without a left one",
-                            1, io::number_text(alone.value.index), true, false});
+          const char* const what = has_depth_
+                                       ? side == 0 ? "image without its depth" : "depth without its image"
+                                   : side == 0 ? "left image without a right one"
+                                               : "right image without a left one";
+          remark(remarks_, {what, 1, io::number_text(alone.value.index), true, false});
         }) {
     if (reader_.channels().empty() && !reader_.is_whole())
       throw Error(file.string() + ": is truncated before the end of its first chunk: nothing can be read");
     const StereoTopics topics = find_stereo_topics(reader_.channels(), options.topics, file.string());
     sides_[0].channel = topics.left;
     sides_[1].channel = topics.right;
+    has_depth_ = topics.has_depth || has_depth_by_encoding(topics);
+    if (has_depth_ && options.rectify)
+      throw Error("--rectify: " + topics.right.topic + " belongs to a rectified image");
     calibrate(topics);
     std::vector<std::uint16_t> wanted{topics.left.id, topics.right.id};
     if (topics.left_grey) wanted.push_back(*topics.left_grey);
@@ -67,8 +77,10 @@ class McapSequence : public SourceSequence {
     first_ = McapSequence::advance();
     if (!first_) {
       const auto& [left, right] = first_stamps_;
-      if (left && right && !remarks_.empty() && remarks_.front().what.find("without a") != std::string::npos)
-        throw Error(file_.string() + ": " + skew_text(*left, *right, options.max_skew_ms));
+      if (left && right && !remarks_.empty() && remarks_.front().what.find("without ") != std::string::npos)
+        throw Error(file_.string() + ": " +
+                    (has_depth_ ? skew_text(*left, *right, options.max_skew_ms, "image and its depth")
+                                : skew_text(*left, *right, options.max_skew_ms)));
       if (!remarks_.empty())
         throw Error(file_.string() + ": " + remarks_.front().what + ": " + remarks_.front().first);
       throw Error(file_.string() + (options.frames.first > 0
@@ -76,7 +88,6 @@ class McapSequence : public SourceSequence {
                                         : ": contains no images of " + sides_[0].channel.topic + " and " +
                                               sides_[1].channel.topic));
     }
-    calibration_.suit(watch_.image_size());
   }
 
   [[nodiscard]] std::optional<std::size_t> size() const override {
@@ -109,6 +120,17 @@ class McapSequence : public SourceSequence {
     }
   }
 
+  /// Of topics that were named: whether the second one is a depth image of the first.
+  bool has_depth_by_encoding(const StereoTopics& topics) {
+    if (topics.right.type != ros::Image::kType) return false;
+    const auto encoding_of = [this](const ros::McapChannel& channel) {
+      const auto image = channel.type == ros::Image::kType ? first_of<ros::Image>(channel.id) : std::nullopt;
+      return image ? image->encoding : std::string();
+    };
+    return is_depth_of(encoding_of(topics.right), encoding_of(topics.left), topics.right.topic,
+                       topics.left.topic);
+  }
+
   void calibrate(const StereoTopics& topics) {
     calibration_.scales = options_.scale_calibration;
     calibration_.has_search_range = options_.has_search_range;
@@ -123,6 +145,10 @@ class McapSequence : public SourceSequence {
       return;
     }
     const auto left = first_of<ros::CameraInfo>(topics.left_info);
+    if (has_depth_) {
+      if (left) calibrate(*left);
+      return;
+    }
     const auto right = first_of<ros::CameraInfo>(topics.right_info);
     if (!left || !right) {
       if (topics.is_raw || options_.rectify) refuse_raw("without camera_info");
@@ -146,6 +172,18 @@ class McapSequence : public SourceSequence {
         calibration_.says.rig = ros::rig_of(*left, *right);
         if (const Size size = ros::image_size_of(*left); size.area() > 0) calibration_.says.image_size = size;
       }
+    } catch (const Error& error) {
+      throw Error(file_.string() + ": " + error.what());
+    }
+  }
+  /// Of an image with depth.
+  void calibrate(const ros::CameraInfo& info) {
+    calibration_.path = file_ / "camera_info";
+    try {
+      const bool is_raw = sides_[0].channel.topic.find("raw") != std::string::npos;
+      calibration_.says.one_camera = ros::one_camera_of(info, is_raw);
+      is_distorted_ = is_raw && std::ranges::any_of(info.d, [](double d) { return d != 0; });
+      if (const Size size = ros::image_size_of(info); size.area() > 0) calibration_.says.image_size = size;
     } catch (const Error& error) {
       throw Error(file_.string() + ": " + error.what());
     }
@@ -199,15 +237,21 @@ class McapSequence : public SourceSequence {
   [[nodiscard]] std::size_t bytes_of(std::size_t side) const {
     std::size_t bytes = 0;
     for (const auto& waiting : pairing_.waiting(side))
-      bytes += waiting.value.image ? waiting.value.image->bytes.size() : 0;
+      bytes += waiting.value.image ? waiting.value.image->bytes.size()
+               : waiting.value.depth
+                   ? sizeof(float) * static_cast<std::size_t>(waiting.value.depth->values.size().area())
+                   : 0;
     return bytes;
   }
 
   void take(std::size_t side, const ros::McapMessage& message) {
-    WaitingImage waiting{sides_[side].seen++, std::nullopt, {}, {}};
+    WaitingImage waiting;
+    waiting.index = sides_[side].seen++;
     Stamp stamp = message.logged;
     try {
-      if (sides_[side].channel.type == ros::CompressedImage::kType) {
+      if (side == 1 && has_depth_) {
+        waiting.depth = depth_in(message, stamp, waiting.frame_id);
+      } else if (sides_[side].channel.type == ros::CompressedImage::kType) {
         const auto image = ros::decode<ros::CompressedImage>(message.bytes);
         stamp = stamp_of(image.header, message);
         waiting.frame_id = ros::camera_of(image.header);
@@ -224,6 +268,18 @@ class McapSequence : public SourceSequence {
     }
     if (!first_stamps_[side]) first_stamps_[side] = stamp;
     pairing_.push(side, stamp, std::move(waiting));
+  }
+  RosDepth depth_in(const ros::McapMessage& message, Stamp& stamp, std::string& frame_id) {
+    const auto decoded = [&]<class M>(std::type_identity<M>) {
+      const auto image = ros::decode<M>(message.bytes);
+      stamp = stamp_of(image.header, message);
+      frame_id = ros::camera_of(image.header);
+      return depth_of(image, pool_);
+    };
+    const std::string& type = sides_[1].channel.type;
+    if (type == ros::DisparityImage::kType) return decoded(std::type_identity<ros::DisparityImage>{});
+    if (type == ros::CompressedImage::kType) return decoded(std::type_identity<ros::CompressedImage>{});
+    return decoded(std::type_identity<ros::Image>{});
   }
   void take_grey(const ros::McapMessage& message) {
     try {
@@ -265,7 +321,7 @@ class McapSequence : public SourceSequence {
       const std::string name = io::number_text(index);
       const WaitingImage& left = both.left.value;
       const WaitingImage& right = both.right.value;
-      if (!left.image || !right.image) {
+      if (!left.image || !(right.image || right.depth)) {
         const bool is_left = !left.image;
         remark(remarks_, {"frame that cannot be read", 1,
                           name + " (" + sides_[is_left ? 0 : 1].channel.topic + " " +
@@ -275,24 +331,52 @@ class McapSequence : public SourceSequence {
       }
       const Stamp stamp = options_.rate_hz > 0 ? stamp_at(index, options_.rate_hz) : both.left.stamp;
       if (!watch_.continues(stamp, name, remarks_)) continue;
-      SequenceFrame frame{name, index, stamp, {}, {}, false};
+      SequenceFrame frame{name, index, stamp, {}, {}};
       frame.frame_id = left.frame_id;
       try {
-        io::LoadedPair pair = io::pair_of(*left.image, *right.image, pool_, bits_);
+        io::LoadedPair pair =
+            io::pair_of(*left.image, right.depth ? *left.image : *right.image, pool_, bits_);
         bits_ = pair.bits;
         if (std::optional<io::Raster> grey = grey_at(both.left.stamp, pair.left.gray.size()))
           pair.left.gray = std::move(io::pair_of(*grey, *grey, pool_).left.gray);
         pair = calibration_.rectified(std::move(pair), pool_);
         frame.left = std::move(pair.left);
-        frame.right = std::move(pair.right.gray);
+        if (!right.depth) frame.right = std::move(pair.right.gray);
       } catch (const Error& error) {
         throw Error(file_.string() + ": frame " + name + ": " + error.what());
+      }
+      if (watch_.image_size().area() == 0) {
+        calibration_.suit(frame.left.gray.size());
+        if (right.depth) begin_depth(left, right);
+      }
+      if (right.depth) {
+        try {
+          frame.disparity_px =
+              disparity_of(*right.depth, frame.left.gray.size(), calibration_.says.rig, pool_);
+        } catch (const Error& error) {
+          throw Error(file_.string() + ": frame " + name + ": " + sides_[1].channel.topic + ": " +
+                      error.what());
+        }
       }
       watch_.see(frame, file_.string(), remarks_);
       return frame;
     }
     end();
     return std::nullopt;
+  }
+  /// Of the first image with depth: completes the calibration, and names what depth cameras get wrong.
+  void begin_depth(const WaitingImage& image, const WaitingImage& depth) {
+    complete(calibration_.says, *depth.depth);
+    if (image.frame_id != depth.frame_id && !depth.frame_id.empty()) {
+      remark(remarks_, {"depth in the frame " + depth.frame_id + ", its image in " + image.frame_id +
+                            ": is it aligned to the image?",
+                        0, sides_[1].channel.topic, false, false});
+    }
+    if (is_distorted_) {
+      remark(remarks_,
+             {"image with distortion, expected a rectified one: positions away from its centre are off", 0,
+              sides_[0].channel.topic, false, false});
+    }
   }
   std::optional<io::Raster> grey_at(Stamp stamp, Size size) {
     while (!greys_.empty() && greys_.front().first < stamp) greys_.pop_front();
@@ -323,6 +407,8 @@ class McapSequence : public SourceSequence {
   Pairing pairing_;
   std::array<std::optional<Stamp>, 2> first_stamps_;
   std::optional<std::uint16_t> grey_;
+  bool has_depth_ = false;
+  bool is_distorted_ = false;  // the image with depth
   std::deque<std::pair<Stamp, io::Raster>> greys_;
   std::size_t pairs_ = 0;
   int bits_ = 8;
@@ -334,6 +420,11 @@ class McapSequence : public SourceSequence {
 
 std::unique_ptr<Sequence> open_mcap(const fs::path& file, const SourceOptions& options, const Pool& pool) {
   return std::make_unique<McapSequence>(file, options, pool);
+}
+
+std::optional<fs::path> recording_of(const std::string& source) {
+  if (io::is_folder(source)) return recording_in(source);
+  return ros::is_mcap(source) ? std::optional<fs::path>(source) : std::nullopt;
 }
 
 std::optional<fs::path> recording_in(const fs::path& folder) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include <cairn/input/sequence.hpp>
 
@@ -19,5 +20,9 @@ std::unique_ptr<Sequence> open_mcap(const std::filesystem::path& file, const Sou
 /// The recording in a folder of `ros2 bag`, which has a metadata.yaml; nullopt for other folders. Throws
 /// Error for several parts, or none in MCAP.
 std::optional<std::filesystem::path> recording_in(const std::filesystem::path& folder);
+
+/// The recording that a source is, or that its folder contains; nullopt for other sources. Throws Error like
+/// recording_in().
+std::optional<std::filesystem::path> recording_of(const std::string& source);
 
 }  // namespace cairn::input

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <cairn/input/ros_depth.hpp>
+
 namespace cairn::input {
 namespace {
 
@@ -18,6 +20,13 @@ using Channels = std::map<std::uint16_t, McapChannel>;
 bool is_image(const McapChannel& channel) {
   return channel.encoding == "cdr" &&
          (channel.type == ros::Image::kType || channel.type == ros::CompressedImage::kType);
+}
+bool is_disparity(const McapChannel& channel) {
+  return channel.encoding == "cdr" && channel.type == ros::DisparityImage::kType;
+}
+/// Whether it is what depth cameras publish beside an image, by type and name.
+bool is_depth_of(const McapChannel& channel, const McapChannel& image) {
+  return is_disparity(channel) || (is_image(channel) && is_named_depth_of(channel.topic, image.topic));
 }
 bool is_compressed(const McapChannel& channel) {
   return channel.type == ros::CompressedImage::kType;
@@ -71,7 +80,7 @@ std::tuple<bool, bool, bool, bool> rank(const McapChannel& channel) {
 std::string image_topics(const Channels& channels) {
   std::string all;
   for (const auto& [id, channel] : channels) {
-    if (is_image(channel)) all += (all.empty() ? "" : ", ") + channel.topic;
+    if (is_image(channel) || is_disparity(channel)) all += (all.empty() ? "" : ", ") + channel.topic;
   }
   return all;
 }
@@ -86,13 +95,53 @@ StereoTopics with_companions(const Channels& channels, const McapChannel& left, 
   StereoTopics topics;
   topics.left = left;
   topics.right = right;
-  topics.is_raw = is_raw(left);
+  topics.has_depth = is_disparity(right) || right.topic.ends_with("/compressedDepth");
+  topics.is_raw = is_raw(left) && !topics.has_depth;
   topics.left_info = info_of(channels, left);
   topics.right_info = info_of(channels, right);
   if (const McapChannel* grey = find(channels, split(left).first + "/image_grey");
       grey != nullptr && grey->type == ros::Image::kType && split(left).second != "image_grey")
     topics.left_grey = grey->id;
   return topics;
+}
+
+/// The image that a depth image belongs to, by the names of the usual drivers; else the only image of the recording.
+const McapChannel* image_with(const Channels& channels, const McapChannel& depth) {
+  constexpr std::array<std::pair<const char*, const char*>, 5> kNames{{{"aligned_depth_to_color", "/color/"},
+                                                                       {"depth_registered", "/rgb/"},
+                                                                       {"/depth/", "/infra1/"},
+                                                                       {"disparity", "/left/"},
+                                                                       {"depth", "/left/"}}};
+  std::vector<const McapChannel*> images;
+  for (const auto& [id, channel] : channels)
+    if (is_image(channel) && is_depth_of(depth, channel)) images.push_back(&channel);
+  std::ranges::stable_sort(images, {}, [](const McapChannel* image) { return rank(*image); });
+  for (const auto& [of_depth, of_image] : kNames) {
+    if (depth.topic.find(of_depth) == std::string::npos) continue;
+    for (const McapChannel* image : images)
+      if (image->topic.find(of_image) != std::string::npos) return image;
+  }
+  return images.size() == 1 ? images.front() : nullptr;
+}
+
+/// Images with their depth.
+std::vector<std::pair<const McapChannel*, const McapChannel*>> with_depth(const Channels& channels) {
+  std::vector<std::pair<const McapChannel*, const McapChannel*>> found;
+  for (const auto& [id, depth] : channels) {
+    if (!is_disparity(depth) && !is_image(depth)) continue;
+    if (const McapChannel* image = image_with(channels, depth)) found.emplace_back(image, &depth);
+  }
+  // A recording of cairn has its results, too, in a namespace of their own.
+  const auto is_elsewhere = [](const auto& pair) {
+    const auto first_of = [](const McapChannel* channel) {
+      return channel->topic.substr(0, channel->topic.find('/', 1));
+    };
+    return first_of(pair.first) != first_of(pair.second);
+  };
+  if (!std::ranges::all_of(found, is_elsewhere)) std::erase_if(found, is_elsewhere);
+  const auto is_packed = [](const auto& pair) { return is_compressed(*pair.second); };
+  if (!std::ranges::all_of(found, is_packed)) std::erase_if(found, is_packed);
+  return found;
 }
 
 }  // namespace
@@ -108,7 +157,7 @@ StereoTopics find_stereo_topics(const Channels& channels, const std::string& wan
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       const std::string topic = i == 0 ? wanted.substr(0, comma) : wanted.substr(comma + 1);
       sides.at(i) = find(channels, topic);
-      if (sides.at(i) == nullptr || !is_image(*sides.at(i)))
+      if (sides.at(i) == nullptr || !(is_image(*sides.at(i)) || (i == 1 && is_disparity(*sides.at(i)))))
         throw Error("--topics: " + file + " has no image topic " + topic + "; " + there);
     }
     return with_companions(channels, *sides[0], *sides[1]);
@@ -121,15 +170,23 @@ StereoTopics find_stereo_topics(const Channels& channels, const std::string& wan
     if (!best.empty() && rank(left) < rank(*best.front().first)) best.clear();
     if (best.empty() || rank(left) == rank(*best.front().first)) best.emplace_back(&left, right);
   }
-  if (best.empty())
-    throw Error(file + ": has no topics of left and right images, expected --topics LEFT,RIGHT; " + there);
+  const bool has_pair = !best.empty();
+  if (!has_pair) best = with_depth(channels);
+  if (best.empty()) {
+    throw Error(file +
+                ": has no topics of left and right images, nor of an image and its depth, expected --topics "
+                "LEFT,RIGHT or IMAGE,DEPTH; " +
+                there);
+  }
   if (best.size() > 1) {
     std::string pairs;
     for (const auto& [left, right] : best)
       pairs += (pairs.empty() ? "" : "; ") + left->topic + "," + right->topic;
-    throw Error(file + ": has more than one stereo pair, expected --topics with one of them: " + pairs);
+    throw Error(file + ": has more than one pair, expected --topics with one of them: " + pairs);
   }
-  return with_companions(channels, *best.front().first, *best.front().second);
+  StereoTopics topics = with_companions(channels, *best.front().first, *best.front().second);
+  if (!has_pair) topics.has_depth = true, topics.is_raw = false;
+  return topics;
 }
 
 }  // namespace cairn::input

@@ -19,11 +19,14 @@ struct StereoTopics {
   std::optional<std::uint16_t> left_info;
   std::optional<std::uint16_t> right_info;
   bool is_raw = false;  // by the topic name
+  /// `right` is a depth or disparity image, by its type or because it was found as one; a named image may still be one.
+  bool has_depth = false;
 };
 
 /// Finds the pair by type and name ("left" and "right", "infra1" and "infra2", "cam0" and "cam1"): rectified
-/// before raw images, uncompressed before compressed ones, colour before grey. `wanted`: "LEFT,RIGHT", or
-/// empty. `file`: for messages. Throws Error if there is no pair, or more than one.
+/// before raw images, uncompressed before compressed ones, colour before grey. Without a pair, a depth or disparity
+/// image and the image that it belongs to. `wanted`: "LEFT,RIGHT" or "IMAGE,DEPTH", or empty. `file`: for messages.
+/// Throws Error if there is no pair, or more than one.
 StereoTopics find_stereo_topics(const std::map<std::uint16_t, ros::McapChannel>& channels,
                                 const std::string& wanted, const std::string& file);
 

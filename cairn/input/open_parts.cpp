@@ -47,4 +47,9 @@ std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptio
   return std::unique_ptr<Sequence>(entry({source, options, pool}));
 }
 
+std::unique_ptr<LiveSensors> open_sensor_topics(const SensorTopicNames& names, const std::string& camera) {
+  const auto entry = CAIRN_ENTRY(CAIRN_HOW_DDS, cairn_open_sensor_topics, kRos2Part, "other sensors");
+  return std::unique_ptr<LiveSensors>(entry(names, camera));
+}
+
 }  // namespace cairn::input

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/input/sensor_topics.hpp>
 #include <cairn/input/sequence.hpp>
 #include <cairn/io/load_module.hpp>
 #include <filesystem>
@@ -22,6 +23,9 @@ std::unique_ptr<Sequence> open_videos(const std::filesystem::path& left, const s
 /// "ros2:/stereo": the topics /stereo/left/image_rect and so on.
 std::unique_ptr<Sequence> open_ros2(const std::string& source, const SourceOptions& options,
                                     const Pool& pool);
+
+/// Topics of other sensors; `camera`: the frame_id of the left images.
+std::unique_ptr<LiveSensors> open_sensor_topics(const SensorTopicNames& names, const std::string& camera);
 
 // The entries of the parts; the caller owns the results.
 
@@ -44,6 +48,8 @@ inline constexpr io::Part kRos2Part{
 }  // namespace cairn::input
 
 extern "C" {
+CAIRN_EXPORT cairn::input::LiveSensors* cairn_open_sensor_topics(const cairn::input::SensorTopicNames& names,
+                                                                 const std::string& camera);
 CAIRN_EXPORT cairn::input::Sequence* cairn_open_video(const cairn::input::VideoRequest& request);
 CAIRN_EXPORT cairn::input::Sequence* cairn_open_ros2(const cairn::input::Ros2Request& request);
 }

@@ -215,12 +215,7 @@ Speeds::Rows speeds_of(const fs::path& path, const std::vector<io::TextLine>& li
 
 class PoseTrack : public MotionPriors {
  public:
-  struct Rows {
-    std::vector<Stamp> stamps;
-    std::vector<Pose> world_from_camera;
-    bool is_of_robot = false;
-  };
-  explicit PoseTrack(Rows rows) : rows_(std::move(rows)) {}
+  explicit PoseTrack(PoseRows rows) : rows_(std::move(rows)) {}
 
   [[nodiscard]] std::optional<MotionPrior> between(Stamp before, Stamp now,
                                                    const Pose& camera_from_level) const override {
@@ -272,7 +267,7 @@ class PoseTrack : public MotionPriors {
     return pose;
   }
 
-  Rows rows_;
+  PoseRows rows_;
 };
 
 /// Converts a robot's axes (x forward, y left, z up) to the level camera's (x right, y down, z forward).
@@ -308,25 +303,29 @@ bool says_robot(const fs::path& path, std::string_view text) {
   return false;
 }
 
-PoseTrack::Rows poses_of(const fs::path& path, std::string_view text, const fs::path& source_folder) {
-  const output::Trajectory file = output::load_trajectory(path);
-  PoseTrack::Rows rows;
-  rows.is_of_robot = says_robot(path, text);
-  std::vector<std::string> names;
-  for (const TimedPose& pose : file.poses) {
-    rows.stamps.push_back(pose.stamp);
-    rows.world_from_camera.push_back(rows.is_of_robot ? pose.map_from_camera * inverse(kLevelFromRobot)
-                                                      : pose.map_from_camera);
-    names.push_back(std::to_string(names.size()));
-  }
-  if (!file.has_stamps) rows.stamps = stamps_beside(path, source_folder, file.poses.size());
-  check_stamps(path, rows.stamps, names);
+void check_speeds(const fs::path& path, const PoseRows& rows) {
   std::vector<double> speeds;
   for (std::size_t i = 1; i < rows.stamps.size(); ++i) {
     const Point3 way = rows.world_from_camera[i].translation_m - rows.world_from_camera[i - 1].translation_m;
     speeds.push_back(length(way) / seconds_between(rows.stamps[i - 1], rows.stamps[i]));
   }
   check_common(path, speeds, kFastestPoses, "speeds", "m/s", "are the positions in mm?");
+}
+
+PoseRows poses_of(const fs::path& path, std::string_view text, const fs::path& source_folder) {
+  const output::Trajectory file = output::load_trajectory(path);
+  PoseRows rows;
+  rows.is_of_robot = says_robot(path, text);
+  std::vector<std::string> names;
+  for (const TimedPose& pose : file.poses) {
+    rows.stamps.push_back(pose.stamp);
+    rows.world_from_camera.push_back(rows.is_of_robot ? level_camera_of(pose.map_from_camera)
+                                                      : pose.map_from_camera);
+    names.push_back(std::to_string(names.size()));
+  }
+  if (!file.has_stamps) rows.stamps = stamps_beside(path, source_folder, file.poses.size());
+  check_stamps(path, rows.stamps, names);
+  check_speeds(path, rows);
   return rows;
 }
 
@@ -334,14 +333,8 @@ PoseTrack::Rows poses_of(const fs::path& path, std::string_view text, const fs::
 
 class Gyroscope : public MotionPriors {
  public:
-  struct Rows {
-    std::vector<Stamp> stamps;
-    std::vector<Vector3> rates;  // rad/s
-    bool has_bias = false;       // subtracted from the rates
-    Vector3 bias{};
-  };
-  Gyroscope(Rows rows, const Pose& camera_from_imu)
-      : rows_(std::move(rows)), camera_from_imu_(rotation_of(camera_from_imu)) {}
+  Gyroscope(GyroscopeRows rows, const std::optional<Vector3>& bias, const Pose& camera_from_imu)
+      : rows_(std::move(rows)), bias_(bias), camera_from_imu_(rotation_of(camera_from_imu)) {}
 
   [[nodiscard]] std::optional<MotionPrior> between(Stamp before, Stamp now,
                                                    const Pose& /*camera_from_level*/) const override {
@@ -350,12 +343,13 @@ class Gyroscope : public MotionPriors {
       const double step_s = seconds_between(rows_.stamps[i - 1], rows_.stamps[i]);
       const double time_s = seconds_between(from, to);
       const double middle = (seconds_between(rows_.stamps[i - 1], from) + time_s / 2) / step_s;
+      const Vector3 bias = bias_.value_or(Vector3{});
       Vector3 turn{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double a = rows_.rates[i - 1][axis];
-        const double b = rows_.rates[i][axis];
+        const double a = rows_.rates_rad_s[i - 1][axis];
+        const double b = rows_.rates_rad_s[i][axis];
         if (!(std::abs(a) <= kFastestGyro && std::abs(b) <= kFastestGyro)) return false;
-        turn[axis] = (a + middle * (b - a) - rows_.bias[axis]) * time_s;
+        turn[axis] = (a + middle * (b - a) - bias[axis]) * time_s;
       }
       before_from_now = before_from_now * rotation_about({turn[0], turn[1], turn[2]});
       return true;
@@ -366,7 +360,7 @@ class Gyroscope : public MotionPriors {
     constexpr double kKnownBias = 0.005;    // rad/s, error of a bias that was subtracted
     constexpr double kUnknownBias = 0.1;    // rad/s; EuRoC's is 0.08 about one axis
     constexpr double kNothingKnownM = 1e3;  // a gyroscope does not measure translation
-    const double sigma_rad = kNoiseRad + (rows_.has_bias ? kKnownBias : kUnknownBias) * time_s;
+    const double sigma_rad = kNoiseRad + (bias_ ? kKnownBias : kUnknownBias) * time_s;
     MotionPrior prior;
     prior.kind = PriorKind::gyroscope;
     prior.now_from_before =
@@ -380,44 +374,14 @@ class Gyroscope : public MotionPriors {
   [[nodiscard]] Stamp last() const override { return rows_.stamps.back(); }
   [[nodiscard]] std::string description() const override {
     return "a gyroscope, " + rows_text(rows_.stamps) +
-           (rows_.has_bias ? ", bias from the rest at the beginning" : ", bias unknown");
+           (bias_ ? ", bias from the rest at the beginning" : ", bias unknown");
   }
 
  private:
-  Rows rows_;
+  GyroscopeRows rows_;
+  std::optional<Vector3> bias_;
   Pose camera_from_imu_;
 };
-
-/// Finds the bias: the mean rate of the first half second, if rates and accelerations are steady then.
-void find_bias(Gyroscope::Rows& rows, const std::vector<Vector3>& accelerations) {
-  constexpr double kRestS = 0.5;
-  constexpr std::size_t kMin = 20;
-  constexpr double kSteadyRate = 0.05;         // rad/s, standard deviation
-  constexpr double kLargestBias = 0.15;        // rad/s
-  constexpr double kSteadyAcceleration = 0.7;  // m/s^2, standard deviation
-  std::size_t count = 0;
-  while (count < rows.stamps.size() && seconds_between(rows.stamps.front(), rows.stamps[count]) < kRestS)
-    ++count;
-  if (count < kMin) return;
-  const auto is_steady = [&](const std::vector<Vector3>& values, double most, Vector3& mean) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      double sum = 0;
-      double squares = 0;
-      for (std::size_t i = 0; i < count; ++i) sum += values[i][axis];
-      mean[axis] = sum / static_cast<double>(count);
-      for (std::size_t i = 0; i < count; ++i) squares += std::pow(values[i][axis] - mean[axis], 2);
-      if (!(std::sqrt(squares / static_cast<double>(count)) <= most)) return false;
-    }
-    return true;
-  };
-  Vector3 bias{};
-  Vector3 unused{};
-  if (!is_steady(rows.rates, kSteadyRate, bias)) return;
-  if (!accelerations.empty() && !is_steady(accelerations, kSteadyAcceleration, unused)) return;
-  if (std::any_of(bias.begin(), bias.end(), [](double b) { return std::abs(b) > kLargestBias; })) return;
-  rows.has_bias = true;
-  rows.bias = bias;
-}
 
 /// The rotation in T_BS of an EuRoC sensor.yaml: from the sensor to the body.
 Pose body_from_sensor(const fs::path& path) {
@@ -441,6 +405,18 @@ Pose body_from_sensor(const fs::path& path) {
   return {{n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]}, {}};
 }
 
+void check_rates(const fs::path& path, const GyroscopeRows& rows) {
+  std::vector<double> sizes;
+  for (const auto& [x, y, z] : rows.rates_rad_s) sizes.push_back(std::sqrt(x * x + y * y + z * z));
+  check_common(path, sizes, kFastestGyro, "turn rates", "rad/s", "are they degrees per second?");
+}
+
+std::vector<std::string> numbers_of(std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) names.push_back(std::to_string(i));
+  return names;
+}
+
 }  // namespace
 
 Pose camera_from_level(double pitch_deg, double roll_deg) {
@@ -462,19 +438,71 @@ std::unique_ptr<MotionPriors> load_odometry(const fs::path& path, const fs::path
   });
   if (is_table) return std::make_unique<Speeds>(speeds_of(path, lines));
   if (fields.size() == 8 || fields.size() == 12) {
-    return std::make_unique<PoseTrack>(poses_of(path, text, source_folder));
+    return priors_of(poses_of(path, text, source_folder));
   }
   throw Error(io::place(path, lines.front().number) + ": has " + std::to_string(fields.size()) +
               " numbers, expected a table with t_s, v_m_per_s, omega_rad_per_s, TUM's lines of 8 numbers, or "
               "KITTI's of 12");
 }
 
+std::optional<std::array<double, 3>> bias_at_rest(const GyroscopeRows& rows) {
+  constexpr double kRestS = 0.5;
+  constexpr std::size_t kMin = 20;
+  constexpr double kSteadyRate = 0.05;         // rad/s, standard deviation
+  constexpr double kLargestBias = 0.15;        // rad/s
+  constexpr double kSteadyAcceleration = 0.7;  // m/s^2, standard deviation
+  std::size_t count = 0;
+  while (count < rows.stamps.size() && seconds_between(rows.stamps.front(), rows.stamps[count]) < kRestS)
+    ++count;
+  if (count < kMin) return std::nullopt;
+  const auto is_steady = [&](const std::vector<Vector3>& values, double most, Vector3& mean) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double sum = 0;
+      double squares = 0;
+      for (std::size_t i = 0; i < count; ++i) sum += values[i][axis];
+      mean[axis] = sum / static_cast<double>(count);
+      for (std::size_t i = 0; i < count; ++i) squares += std::pow(values[i][axis] - mean[axis], 2);
+      if (!(std::sqrt(squares / static_cast<double>(count)) <= most)) return false;
+    }
+    return true;
+  };
+  Vector3 bias{};
+  Vector3 unused{};
+  if (!is_steady(rows.rates_rad_s, kSteadyRate, bias)) return std::nullopt;
+  if (!rows.accelerations_m_s2.empty() && !is_steady(rows.accelerations_m_s2, kSteadyAcceleration, unused))
+    return std::nullopt;
+  if (std::any_of(bias.begin(), bias.end(), [](double b) { return std::abs(b) > kLargestBias; }))
+    return std::nullopt;
+  return bias;
+}
+
+Pose level_camera_of(const Pose& world_from_robot) {
+  return world_from_robot * inverse(kLevelFromRobot);
+}
+
+std::unique_ptr<MotionPriors> priors_of(PoseRows rows) {
+  return std::make_unique<PoseTrack>(std::move(rows));
+}
+
+std::unique_ptr<MotionPriors> priors_of(GyroscopeRows rows, const std::optional<Vector3>& bias,
+                                        const Pose& camera_from_imu) {
+  return std::make_unique<Gyroscope>(std::move(rows), bias, camera_from_imu);
+}
+
+void check_rows(const PoseRows& rows, const std::string& source) {
+  check_stamps(source, rows.stamps, numbers_of(rows.stamps.size()));
+  check_speeds(source, rows);
+}
+
+void check_rows(const GyroscopeRows& rows, const std::string& source) {
+  check_stamps(source, rows.stamps, numbers_of(rows.stamps.size()));
+  check_rates(source, rows);
+}
+
 std::unique_ptr<MotionPriors> load_imu(const fs::path& path, const Pose& camera_from_imu) {
   const std::string text = io::read_file(path, io::kMaxLogBytes);
-  Gyroscope::Rows rows;
-  std::vector<Vector3> accelerations;
+  GyroscopeRows rows;
   std::vector<std::string> names;
-  std::vector<double> sizes;
   for (const io::TextLine& line : io::lines_of(text)) {
     const std::vector<std::string_view> fields = io::fields_of(line.text);
     if (fields.size() < 4) {
@@ -493,17 +521,15 @@ std::unique_ptr<MotionPriors> load_imu(const fs::path& path, const Pose& camera_
                      io::number_in(fields[first + 2], path, line.number)};
     };
     rows.stamps.push_back(*stamp);
-    rows.rates.push_back(three_from(1));
-    if (fields.size() >= 7) accelerations.push_back(three_from(4));
-    const auto& [x, y, z] = rows.rates.back();
-    sizes.push_back(std::sqrt(x * x + y * y + z * z));
+    rows.rates_rad_s.push_back(three_from(1));
+    if (fields.size() >= 7) rows.accelerations_m_s2.push_back(three_from(4));
     names.push_back("of line " + std::to_string(line.number));
   }
-  if (accelerations.size() != rows.rates.size()) accelerations.clear();
+  if (rows.accelerations_m_s2.size() != rows.rates_rad_s.size()) rows.accelerations_m_s2.clear();
   check_stamps(path, rows.stamps, names);
-  check_common(path, sizes, kFastestGyro, "turn rates", "rad/s", "are they degrees per second?");
-  find_bias(rows, accelerations);
-  return std::make_unique<Gyroscope>(std::move(rows), camera_from_imu);
+  check_rates(path, rows);
+  const auto bias = bias_at_rest(rows);
+  return priors_of(std::move(rows), bias, camera_from_imu);
 }
 
 std::optional<Pose> mounting_of_imu(const fs::path& path, const io::Rectifier* rectifier) {

@@ -2,11 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <cairn/sequence/odometry.hpp>
 #include <cairn/sequence/pose.hpp>
@@ -40,6 +42,33 @@ class MotionPriors {
  protected:
   MotionPriors() = default;
 };
+
+/// Poses in time, stamps ascending: of the camera or, if is_of_robot, of a level camera at the centre of a robot.
+struct PoseRows {
+  std::vector<Stamp> stamps;
+  std::vector<Pose> world_from_camera;
+  bool is_of_robot = false;
+};
+/// The pose of a level camera at the centre of a robot (x forward, y left, z up).
+Pose level_camera_of(const Pose& world_from_robot);
+
+/// What a gyroscope measured, about its own axes, stamps ascending. `accelerations_m_s2` may be empty.
+struct GyroscopeRows {
+  std::vector<Stamp> stamps;
+  std::vector<std::array<double, 3>> rates_rad_s;
+  std::vector<std::array<double, 3>> accelerations_m_s2;
+};
+/// Its bias: the mean rate of the first half second, if rates and accelerations are steady then.
+std::optional<std::array<double, 3>> bias_at_rest(const GyroscopeRows& rows);
+
+/// The priors of at least two rows.
+std::unique_ptr<MotionPriors> priors_of(PoseRows rows);
+std::unique_ptr<MotionPriors> priors_of(GyroscopeRows rows, const std::optional<std::array<double, 3>>& bias,
+                                        const Pose& camera_from_imu);
+/// Throws Error naming `source` if there are fewer than two rows, stamps do not ascend, or most numbers are too large
+/// to be in m and rad/s.
+void check_rows(const PoseRows& rows, const std::string& source);
+void check_rows(const GyroscopeRows& rows, const std::string& source);
 
 /// The rotation camera_from_level of a camera that is pitched down by `pitch_deg` and rolled to the right by
 /// `roll_deg`; see KnownGround.

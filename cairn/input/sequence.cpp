@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 bool are_readable(const ListedFrame& files) {
   try {
     (void)io::load_picture(files.left);
-    (void)io::load_picture(files.right);
+    if (!files.right.empty()) (void)io::load_picture(files.right);
+    if (files.given) (void)io::load_values(*files.given);
     return true;
   } catch (const Error&) {
     return false;
@@ -51,12 +52,13 @@ class FileSequence : public SourceSequence {
     const ListedFrame& first = list_.frames.front();
     const std::optional<fs::path> found = first.calib ? first.calib : list_.calib;
     each_has_own_ = options.calib.empty() && first.calib && !list_.is_raw && !options.rectify;
+    if (options.rectify && first.given)
+      throw Error("--rectify: " + first.given->path.string() + " belongs to a rectified image");
     calibration_ = open_calibration(options, found, list_.grey_cameras, list_.is_raw, [&] {
       return io::load_pair(first.left, first.right, first.layout).left.gray.size();
     });
     if (each_has_own_) calib_bytes_ = io::read_file(calibration_.path, io::kMaxTextBytes);
     first_ = load(first);
-    calibration_.suit(first_->left.gray.size());
     std::ranges::move(calibration_.remarks(first.name), std::back_inserter(remarks_));
   }
 
@@ -83,17 +85,28 @@ class FileSequence : public SourceSequence {
 
   SequenceFrame load(const ListedFrame& files) {
     if (each_has_own_) check_calibration(files);
-    io::LoadedPair pair = io::load_pair(files.left, files.right, files.layout, pool_, bits_);
+    // An image without a right one has its own scale, like a pair.
+    io::LoadedPair pair =
+        io::load_pair(files.left, files.right.empty() ? files.left : files.right, files.layout, pool_, bits_);
+    bits_ = pair.bits;
+    if (files.right.empty()) pair.right = {};
     // Raw images are compared by their own size.
     if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
       throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +
                   text(raw_size_) + " like the frames before");
     }
     raw_size_ = pair.left.gray.size();
-    bits_ = pair.bits;
     pair = calibration_.rectified(std::move(pair), pool_);
-    SequenceFrame frame{
-        files.name, files.index, files.stamp, std::move(pair.left), std::move(pair.right.gray), false};
+    const bool is_depth = files.given && files.given->depth_units_per_m;
+    if (watch_.image_size().area() == 0) {
+      calibration_.suit(pair.left.gray.size());
+      if (is_depth) calibration_.says.rig = io::rig_of_depth(calibration_.says);
+    }
+    SequenceFrame frame{files.name, files.index, files.stamp, std::move(pair.left),
+                        std::move(pair.right.gray)};
+    if (files.given) {
+      frame.disparity_px = io::load_given(*files.given, frame.left.gray.size(), calibration_.says.rig, pool_);
+    }
     watch_.see(frame, files.left.string(), remarks_);
     return frame;
   }
@@ -102,7 +115,9 @@ class FileSequence : public SourceSequence {
     if (!files.calib || *files.calib == calibration_.path ||
         io::read_file(*files.calib, io::kMaxTextBytes) == calib_bytes_)
       return;
-    if (!is_same(io::load_calibration(*files.calib, list_.grey_cameras).rig, calibration_.says.rig)) {
+    const io::Calibration own = io::load_calibration(*files.calib, list_.grey_cameras);
+    const bool is_depth = files.given && files.given->depth_units_per_m;
+    if (!is_same(is_depth ? io::rig_of_depth(own) : own.rig, calibration_.says.rig)) {
       throw Error(files.calib->string() + ": differs from the calibration " + calibration_.path.string() +
                   ", expected one rig for the whole sequence");
     }
@@ -139,21 +154,23 @@ void check(const SourceOptions& options) {
   (void)io::layout_of(options.layout);
 }
 
-/// The MCAP file that the source is, or that the folder contains.
-std::optional<fs::path> recording_of(const std::string& source) {
-  if (io::is_folder(source)) return recording_in(source);
-  return ros::is_mcap(source) ? std::optional<fs::path>(source) : std::nullopt;
-}
-
 void check_no_topics(const SourceOptions& options, const std::string& source) {
   if (!options.topics.empty())
-    throw Error("--topics " + options.topics + ": is for a recording (MCAP), " + source + " is none");
+    throw Error("--topics " + options.topics + ": is for a recording (MCAP) or ros2:, " + source +
+                " is none");
 }
 
 void check_no_layout(const SourceOptions& options, const std::string& source) {
   if (!options.layout.empty())
     throw Error("--layout " + options.layout + ": is for images or one video with both images, " + source +
                 " is none");
+}
+
+[[noreturn]] void refuse_maps(const io::MapOptions& maps, const std::string& source) {
+  throw Error(std::string(!maps.disparity.empty() ? "--disparity"
+                          : !maps.depth.empty()   ? "--depth-image"
+                                                  : "--depth-units") +
+              ": is for a folder of frames, " + source + " is none");
 }
 
 std::unique_ptr<Sequence> open_pair(const std::string& left, const std::string& right,
@@ -192,6 +209,14 @@ void refuse_other_recording(const std::string& source) {
 
 }  // namespace
 
+StereoPair pair_of(const SequenceFrame& frame) {
+  if (frame.right.empty()) {
+    throw Error("frame " + frame.name +
+                ": has a depth image or disparities instead of a right image, expected a pair");
+  }
+  return StereoPair::from(frame.left.gray, frame.right, frame.left.rgb);
+}
+
 FrameRange parse_frame_range(std::string_view text) {
   const auto refuse = [&] {
     throw Error("--frames " + std::string(text) +
@@ -228,17 +253,19 @@ std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceO
                                         const Pool& pool) {
   check(options);
   if (source.empty()) throw Error("SOURCE: found an empty name, expected a folder or a video");
+  if (options.maps.any() && (is_camera(source) || !io::is_folder(source) || recording_of(source)))
+    refuse_maps(options.maps, source);
   if (exists(source) && !is_camera(source)) {
     if (const auto recording = recording_of(source)) {
       check_no_layout(options, source);
       return open_mcap(*recording, options, pool);
     }
   }
-  check_no_topics(options, source);
   if (source.starts_with("ros2:") && !exists(source)) {
     check_no_layout(options, source);
     return open_ros2(source, options, pool);
   }
+  check_no_topics(options, source);
   if (is_camera(source)) return open_camera(source, options, pool);
   for (const char* web : {"http://", "https://"}) {
     if (source.starts_with(web)) {

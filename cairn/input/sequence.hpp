@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include <cairn/io/dataset.hpp>
 #include <cairn/io/image_files.hpp>
 #include <cairn/io/stereo_calibration.hpp>
 #include <cairn/sequence/pose.hpp>
@@ -27,14 +28,18 @@ struct SequenceFrame {
   std::size_t index = 0;  // in the source, from 0; --frames counts these
   Stamp stamp;            // later than the one before, unless the clock was set back, see clock_step()
   io::LoadedImage left;
-  Image<Gray> right;
+  Image<Gray> right;       // may be empty where disparities are given
   bool after_gap = false;  // more than SourceOptions::max_gap_s after the frame before
   // For cameras: the arrival time by the steady clock of this computer; nullopt for files.
   std::optional<std::chrono::steady_clock::time_point> arrived = {};
   // ROS' name of the left camera's frame, from the image's header; empty where the source has none.
   std::string frame_id = {};
-  bool begins_round = false;  // the first frame of another round through files: nobody waits for it
+  bool begins_round = false;       // the first frame of another round through files: nobody waits for it
+  Image<float> disparity_px = {};  // given, and taken instead of the pair's; NaN: hole. Empty: none
 };
+
+/// The pair of a frame. Throws Error, naming it, if it has a depth image or disparities instead.
+StereoPair pair_of(const SequenceFrame& frame);
 
 /// The status of a camera; for files all counts are 0 and it is connected.
 struct SourceStatus {
@@ -74,8 +79,10 @@ struct SourceOptions {
   double rate_hz = 0;  // replaces missing stamps and those of a video; 0 = from the source, else 10
   FrameRange frames;
   double max_gap_s = 1.0;
-  double max_skew_ms = 5;          // between the stamps of left and right, if each side has its own
-  std::string topics;              // of a recording, "LEFT,RIGHT"; empty: found by type and name
+  double max_skew_ms = 5;  // between the stamps of left and right, if each side has its own
+  // Of a recording and of ROS 2: "LEFT,RIGHT" or "IMAGE,DEPTH"; empty: found by type and name, or left/image_rect and right/image_rect.
+  std::string topics;
+  io::MapOptions maps;             // of folders: used instead of matching
   bool rectify = false;            // the images are raw and are rectified by the calibration; always for
                                    // EuRoC
   bool scale_calibration = false;  // where it is for images of another size of the same shape
@@ -117,6 +124,8 @@ class Sequence {
   [[nodiscard]] virtual const KnownGround& ground() const = 0;
   /// The rectification of raw images by next(); null for rectified sources.
   [[nodiscard]] virtual const io::Rectifier* rectifier() const = 0;
+  /// ROS' name of the left camera's frame, of the first image; empty where the source has none.
+  [[nodiscard]] virtual std::string frame_id() const { return {}; }
   /// The origin of the stamps: "stamps.txt", "a rate of 10 Hz".
   [[nodiscard]] virtual std::string stamps_from() const = 0;
   /// Remarks on frames skipped or noticed so far.
@@ -133,6 +142,7 @@ class Sequence {
 /// Opens a source, recognised by its content or name:
 /// - a folder of frames (docs/formats.md), of KITTI odometry or raw recordings, of EuRoC or TUM-VI;
 /// - a folder of images with both images each, with options.layout;
+/// - a folder of colour or grey images with depth images (TUM RGB-D and the like, see io::find_frames());
 /// - "DIR_L,DIR_R", two folders of images, paired in order or by stamps; "left_%04d.png,right_%04d.png", two
 ///   patterns;
 /// - a video with options.layout, or "l.mp4,r.mp4"; a recording (MCAP);

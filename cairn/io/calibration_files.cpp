@@ -226,6 +226,9 @@ Calibration judged(const Statement& says) {
     calibration.rig =
         StereoRig{static_cast<float>(*focal), center(says.cx, "cx"), center(says.cy, "cy"),
                   static_cast<float>(*says.baseline_m), static_cast<float>(says.doffs.value_or(0.0))};
+  } else if (focal && says.cx && says.cy) {
+    calibration.one_camera =
+        StereoRig{static_cast<float>(*focal), static_cast<float>(*says.cx), static_cast<float>(*says.cy)};
   }
   if (says.width && says.height) {
     calibration.image_size = Size{counted(*says.width, "width", kMaxPixelsPerSide),
@@ -550,6 +553,13 @@ void check_ground(const KnownGround& known) {
   if (!known.points.empty()) (void)ground_from_points(known.points);
 }
 
+std::optional<StereoRig> rig_of_depth(const Calibration& calibration) {
+  if (calibration.rig || !calibration.one_camera) return calibration.rig;
+  StereoRig rig = *calibration.one_camera;
+  rig.baseline_m = kDepthBaseline_m;
+  return rig;
+}
+
 int disparities_down_to(double nearest_m, const StereoRig& rig, int width) {
   constexpr int kStep = 16;
   constexpr int kMax = 1024;
@@ -574,13 +584,14 @@ Calibration scaled(const Calibration& calibration, Size image) {
   Calibration result = calibration;
   result.image_size = image;
   const auto scale = static_cast<float>(across);
-  if (result.rig) {
+  for (std::optional<StereoRig>* rig : {&result.rig, &result.one_camera}) {
+    if (!*rig) continue;
     // Pixel centres are whole numbers: the border of the image, at -0.5, stays where it is.
     const auto moved = [](float at, double by) { return static_cast<float>((double{at} + 0.5) * by - 0.5); };
-    result.rig->focal_px *= scale;
-    result.rig->cx_px = moved(result.rig->cx_px, across);
-    result.rig->cy_px = moved(result.rig->cy_px, down);
-    result.rig->doffs_px *= scale;
+    (*rig)->focal_px *= scale;
+    (*rig)->cx_px = moved((*rig)->cx_px, across);
+    (*rig)->cy_px = moved((*rig)->cy_px, down);
+    (*rig)->doffs_px *= scale;
   }
   if (result.num_disparities) {
     result.num_disparities =

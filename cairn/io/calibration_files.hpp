@@ -22,6 +22,7 @@ struct Calibration {
   bool of_raw_cameras = false;
   /// What its user should know, without the file's name: unknown keys that were ignored, fx ≠ fy.
   std::vector<std::string> remarks{};
+  std::optional<StereoRig> one_camera{};  // without a baseline, which is 0: enough for a depth camera
 };
 
 /// A calibration that is readable but impossible: a focal length or baseline that is not positive.
@@ -44,6 +45,12 @@ class ImpossibleCalibration : public Error {
 /// than 1 % apart, exchanged cameras; ImpossibleCalibration: a focal length or baseline that is not positive.
 /// Of the four KITTI cameras, reads the colour pair unless `grey_cameras`.
 Calibration load_calibration(const std::filesystem::path& path, bool grey_cameras = false);
+/// The rig that gives the depths of a depth camera as disparities: `rig`, else that of the camera with an assumed
+/// baseline, which changes no position. nullopt without a focal length.
+std::optional<StereoRig> rig_of_depth(const Calibration& calibration);
+/// The assumed baseline. Objects are found equally well from 0.1 to 0.25 m. (docs/bring_your_own_depth.md)
+inline constexpr float kDepthBaseline_m = 0.15F;
+
 /// The same for the content of a file, named `name` in messages.
 Calibration parse_calibration(std::string_view text, const std::filesystem::path& name,
                               bool grey_cameras = false);

@@ -6,7 +6,10 @@
 #include <cairn/io/calibration_forms.hpp>
 #include <cairn/io/dataset.hpp>
 #include <cairn/io/frame_names.hpp>
+#include <charconv>
+#include <cmath>
 #include <functional>
+#include <map>
 #include <system_error>
 
 namespace cairn::io {
@@ -30,6 +33,10 @@ constexpr std::array kPairs = {Names{"left", "right"}, Names{"Left", "Right"}, N
                                Names{"view1", "view5"}, Names{"im0", "im1"}};
 /// Middlebury 2014 has disp0 and disp1 in a folder; disp0 belongs to the left image.
 constexpr std::array kTrueDisparities = {"disp_left", "disp0GT", "disp0", "disp1", "disp2"};
+
+// Of an RGB-D camera.
+constexpr std::array kWithDepth = {"left", "rgb", "color", "colour", "image", "images", "infra1"};
+constexpr double kTumUnitsPerMetre = 5000;
 
 struct Folders {
   const char* left;
@@ -86,6 +93,19 @@ std::optional<fs::path> calibration_of(const fs::path& folder) {
   return calib ? calib : calibration_in(truth_beside(folder));
 }
 
+/// The map with this name, without its extension.
+std::optional<fs::path> map_file(const fs::path& stem) {
+  for (const char* extension : {".png", ".pfm", ".npy"}) {
+    if (std::optional<fs::path> found = file(stem.string() + extension)) return found;
+  }
+  return std::nullopt;
+}
+
+std::optional<GivenMap> depth_image(const fs::path& stem) {
+  const std::optional<fs::path> path = map_file(stem);
+  return path ? std::optional(GivenMap{*path, kDepthUnitsPerMetre}) : std::nullopt;
+}
+
 std::optional<FrameFiles> frame_in(const fs::path& folder) {
   for (const auto& [left_name, right_name] : kPairs) {
     const std::optional<fs::path> left = picture(folder, left_name);
@@ -94,8 +114,20 @@ std::optional<FrameFiles> frame_in(const fs::path& folder) {
     std::optional<fs::path> right = file(expected);
     if (!right) right = picture(folder, right_name);
     if (!right && picture(folder, "im0") && left_name == std::string_view("im2")) continue;
-    return FrameFiles{
+    FrameFiles frame{
         clean(folder).filename().string(), folder, *left, right, calibration_of(folder), expected};
+    if (!right) frame.given = depth_image(folder / "depth");
+    if (const auto map = map_file(folder / "disparity"); !right && !frame.given && map)
+      frame.given = GivenMap{*map};
+    return frame;
+  }
+  for (const char* name : kWithDepth) {
+    const std::optional<fs::path> left = picture(folder, name);
+    const std::optional<GivenMap> depth = depth_image(folder / "depth");
+    if (!left || !depth) continue;
+    FrameFiles frame{clean(folder).filename().string(), folder, *left, {}, calibration_of(folder)};
+    frame.given = depth;
+    return frame;
   }
   return std::nullopt;
 }
@@ -224,7 +256,55 @@ std::vector<FrameFiles> pairs_in(const fs::path& folder, const Folders& names, s
   return std::any_of(all.begin(), all.end(), is_pair) ? pairs_among(std::move(all), alone) : all;
 }
 
+/// The names of TUM RGB-D are stamps in s.
+std::optional<double> seconds_in(const fs::path& path) {
+  const std::string stem = path.stem().string();
+  double seconds = 0;
+  const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), seconds);
+  const bool is_number = error == std::errc{} && end == stem.data() + stem.size();
+  return is_number && stem.find('.') != std::string::npos ? std::optional(seconds) : std::nullopt;
+}
+
+/// The depth image nearest in time.
+std::optional<fs::path> nearest_in_time(const std::map<double, fs::path>& depths, const fs::path& image) {
+  constexpr double kMaxSkew = 0.02;  // s, as the tools of that data set
+  const std::optional<double> stamp = seconds_in(image);
+  if (!stamp || depths.empty()) return std::nullopt;
+  auto best = depths.lower_bound(*stamp);
+  if (best == depths.end() ||
+      (best != depths.begin() && *stamp - std::prev(best)->first < best->first - *stamp))
+    --best;
+  return std::abs(best->first - *stamp) <= kMaxSkew ? std::optional(best->second) : std::nullopt;
+}
+
+/// rgb/01.png and depth/01.png.
+std::vector<FrameFiles> frames_with_depth(const fs::path& folder, std::vector<fs::path>& alone) {
+  const auto* const images =
+      std::ranges::find_if(kWithDepth, [&](const char* name) { return is_folder(folder / name); });
+  if (images == kWithDepth.end() || !is_folder(folder / "depth") || is_folder(folder / "right")) return {};
+  const bool is_tum = is_file(folder / "rgb.txt") || is_file(folder / "associations.txt");
+  std::map<double, fs::path> by_time;
+  for (const fs::path& path : images_in(folder / "depth")) {
+    if (const auto stamp = seconds_in(path)) by_time.emplace(*stamp, path);
+  }
+  const std::optional<fs::path> calib = calibration_of(folder);
+  std::vector<FrameFiles> frames =
+      each_in(folder / *images, [&](const fs::path& image) -> std::optional<FrameFiles> {
+        if (!is_picture(image)) return std::nullopt;
+        std::optional<fs::path> depth = map_file(folder / "depth" / image.stem());
+        if (!depth) depth = nearest_in_time(by_time, image);
+        FrameFiles frame{image.stem().string(), folder, image, {}, calib};
+        if (depth) frame.given = GivenMap{*depth, is_tum ? kTumUnitsPerMetre : kDepthUnitsPerMetre};
+        return frame;
+      });
+  for (const FrameFiles& frame : frames)
+    if (!frame.given) alone.push_back(frame.left);
+  std::erase_if(frames, [](const FrameFiles& frame) { return !frame.given; });
+  return frames;
+}
+
 std::vector<FrameFiles> pairs_by_name(const fs::path& folder, Cameras cameras, std::vector<fs::path>& alone) {
+  if (auto frames = frames_with_depth(folder, alone); !frames.empty()) return frames;
   for (const Folders& names : kFolders) {
     if (!is_folder(folder / names.left)) continue;
     std::vector<FrameFiles> pairs = pairs_in(folder, names, alone);
@@ -245,6 +325,28 @@ std::vector<FrameFiles> frames_in(const fs::path& folder, Cameras cameras, std::
   if (std::optional<FrameFiles> frame = frame_in(folder)) return {*frame};
   std::vector<FrameFiles> frames = frames_below(folder);
   return frames.empty() ? pairs_by_name(folder, cameras, alone) : frames;
+}
+
+void give_maps_in(const fs::path& maps, const std::string& option, std::vector<FrameFiles>& frames,
+                  std::optional<double> depth_units_per_m) {
+  const bool are_many = is_folder(maps);
+  if (frames.size() > 1 && !are_many) {
+    throw Error(option + " " + maps.string() + ": one map for the " + std::to_string(frames.size()) +
+                " frames of " + frames.front().folder.string() + "; give a folder of maps, or one frame");
+  }
+  bool has_any = false;
+  for (FrameFiles& frame : frames) {
+    std::optional<fs::path> path = maps;
+    if (are_many) path = map_file(maps / frame.name);
+    if (!path) path = map_file(maps / frame.name / (depth_units_per_m ? "depth" : "disparity"));
+    frame.given = path ? std::optional(GivenMap{*path, depth_units_per_m}) : std::nullopt;
+    has_any = has_any || path;
+  }
+  if (!has_any) {
+    const std::string& name = frames.front().name;
+    throw Error(option + " " + maps.string() + ": has no map of the frame " + name + ", expected " + name +
+                ".png, .pfm or .npy");
+  }
 }
 
 /// The subfolder with frames, as in several data sets.
@@ -320,6 +422,25 @@ std::vector<FrameFiles> find_frames(const fs::path& folder, Cameras cameras, std
               ": contains no left.png (.jpg .pgm .ppm), no folder with one, no pairs such as "
               "left01.png and right01.png, or left/01.png and right/01.png, and no known data set "
               "(docs/formats.md)");
+}
+
+void give_maps(std::vector<FrameFiles>& frames, const MapOptions& options) {
+  const std::optional<double> units = options.depth_units_per_m;
+  if (!options.disparity.empty() && !options.depth.empty())
+    throw Error("--depth-image: found --disparity as well, expected one of the two");
+  if (units && !(*units >= 1 && *units <= 1e6))
+    throw Error("--depth-units: found " + written(*units) +
+                ", expected units per metre, 1 ... 1e6 (1000: mm)");
+  if (!options.disparity.empty()) give_maps_in(options.disparity, "--disparity", frames, std::nullopt);
+  if (!options.depth.empty()) give_maps_in(options.depth, "--depth-image", frames, kDepthUnitsPerMetre);
+  if (!units) return;
+  bool has_depth = false;
+  for (FrameFiles& frame : frames) {
+    if (!frame.given || !frame.given->depth_units_per_m) continue;
+    has_depth = true;
+    frame.given->depth_units_per_m = *units;
+  }
+  if (!has_depth) throw Error("--depth-units: there is no depth image that it could be of");
 }
 
 std::vector<FrameFiles> find_pairs(const fs::path& folder) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cairn/evaluation/object_error.hpp>
+#include <cairn/io/disparity_files.hpp>
 #include <cairn/io/image_files.hpp>
 #include <filesystem>
 #include <optional>
@@ -16,11 +17,12 @@ struct FrameFiles {
   std::string name;  // of the folder, or of the left image among others in a folder
   std::filesystem::path folder;
   std::filesystem::path left;
-  std::optional<std::filesystem::path> right;  // optional with an external disparity map
+  std::optional<std::filesystem::path> right;  // optional with a given map
   std::optional<std::filesystem::path> calib;  // of the frame, else of ../gt/
   std::filesystem::path expected_right{};      // for messages; empty if no layout determines it
   bool grey_cameras = false;                   // KITTI cameras 0 and 1, with their own projections
   Layout layout = Layout::one;                 // otherwise left and right are one file with both images
+  std::optional<GivenMap> given = {};          // disparities or depth, used instead of the right image
 };
 /// The images of a frame with a right one. Throws Error.
 LoadedPair load_pair(const FrameFiles& files, const Pool& pool = {}, int least_bits = 8);
@@ -35,9 +37,25 @@ bool is_picture(const std::filesystem::path& path);
 /// sub-folders with one is, else each pair of files whose names differ only in left and right (left01.jpg,
 /// right01.jpg; also Left and Right, _L and _R) or that have such names or the same one in the sub-folders left/ and
 /// right/, or in KITTI's image_2/ and image_3/, TartanAir's image_left/ and image_right/ and the like; EuRoC's cam0/data/ and cam1/data/ only if raw cameras are requested. `alone`:
-/// left images that have no right one, among pairs of files. Throws Error if there is no frame.
+/// left images that have no right one, among pairs of files. Where there is no right image, a map takes its
+/// place: disparity or depth.png, .pfm or .npy beside left, or depth beside rgb, color or image; or a sub-folder depth/ beside rgb/, color/, image/,
+/// infra1/ or left/, with the same names or, as in TUM RGB-D, stamps in s that are at most 20 ms apart. Their unit is
+/// mm, in the folders of TUM RGB-D (with rgb.txt or associations.txt) 1/5 mm. Throws Error if there is no frame.
 std::vector<FrameFiles> find_frames(const std::filesystem::path& folder, Cameras cameras = Cameras::rectified,
                                     std::vector<std::filesystem::path>* alone = nullptr);
+
+/// Maps to be used instead of matching, as options of a command: a folder of .png, .pfm or .npy with the names of the
+/// frames, or of results, or the file of a single frame. At most one of them.
+struct MapOptions {
+  std::string disparity;
+  std::string depth;
+  std::optional<double> depth_units_per_m;  // of 16-bit depth images; nullopt: as find_frames() says
+  [[nodiscard]] bool any() const { return !disparity.empty() || !depth.empty() || depth_units_per_m; }
+};
+/// Gives the frames their maps; without such options they keep those that they have. Throws Error, naming the option
+/// as on the command line: two kinds, no frame with a map, one file for several frames, units out of range or without
+/// a depth image.
+void give_maps(std::vector<FrameFiles>& frames, const MapOptions& options);
 
 /// The images of a folder, by their extensions, in the order of the numbers in their names. Throws Error.
 std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder);

@@ -10,6 +10,7 @@
 #include <cairn/io/image_files.hpp>
 #include <cairn/io/raster.hpp>
 #include <cairn/io/read_file.hpp>
+#include <cairn/stereo/disparity_map.hpp>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -76,16 +77,19 @@ float middlebury_unit(const fs::path& path, Size size) {
               ", not the size of a Middlebury map of known scale; expected 16 bits (disparity * 256)");
 }
 
-Image<float> load_png(const fs::path& path, const Pool& pool) {
-  const Labels values = load_labels(path);
-  const float unit = values.bits == 16 ? 256.0F : middlebury_unit(path, values.ids.size());
-  Image<float> disparity(values.ids.size(), pool);
-  for (int y = 0; y < disparity.height(); ++y) {
-    const std::uint16_t* from = values.ids.row(y);
-    std::transform(from, from + disparity.width(), disparity.row(y),
+Image<float> divided(View<const std::uint16_t> values, float unit, const Pool& pool) {
+  Image<float> all(values.size(), pool);
+  for (int y = 0; y < all.height(); ++y) {
+    const std::uint16_t* from = values.row(y);
+    std::transform(from, from + all.width(), all.row(y),
                    [&](std::uint16_t v) { return v == 0 ? kHole : static_cast<float>(v) / unit; });
   }
-  return disparity;
+  return all;
+}
+
+Image<float> load_png(const fs::path& path, const Pool& pool) {
+  const Labels values = load_labels(path);
+  return divided(values.ids, values.bits == 16 ? 256.0F : middlebury_unit(path, values.ids.size()), pool);
 }
 
 void save_as_png(const fs::path& path, View<const float> disparity_px) {
@@ -222,13 +226,14 @@ Image<float> values_of(std::string_view bytes, Size size, const Pool& pool) {
     for (int x = 0; x < size.width; ++x, from += sizeof(T)) {
       T value{};
       std::memcpy(&value, from, sizeof value);
-      disparity(x, y) = std::isfinite(value) ? static_cast<float>(value) : kHole;
+      disparity(x, y) = std::isfinite(static_cast<double>(value)) ? static_cast<float>(value) : kHole;
     }
   }
   return disparity;
 }
 
-Image<float> decode_npy(std::string_view file, const Pool& pool) {
+/// `integer_unit`: of values of 16 bits, for depth.
+Image<float> decode_npy(std::string_view file, const Pool& pool, std::optional<float> integer_unit = {}) {
   constexpr std::string_view kMagic = "\x93NUMPY";
   const auto byte = [&](std::size_t at) {
     return static_cast<std::size_t>(static_cast<unsigned char>(file[at]));
@@ -248,7 +253,14 @@ Image<float> decode_npy(std::string_view file, const Pool& pool) {
   const std::string_view type = after(header, "'descr'").substr(0, 5);
   if (type == "'<f4'") return values_of<float>(pixels, size, pool);
   if (type == "'<f8'") return values_of<double>(pixels, size, pool);
-  throw Error("contains values of type " + excerpt(type) + ", expected '<f4' or '<f8' (float32, float64)");
+  if (integer_unit && type == "'<u2'") {
+    Image<float> values = values_of<std::uint16_t>(pixels, size, pool);
+    for (int y = 0; y < size.height; ++y)
+      std::for_each(values.row(y), values.row(y) + size.width, [&](float& v) { v /= *integer_unit; });
+    return values;
+  }
+  throw Error("contains values of type " + excerpt(type) + ", expected '<f4' or '<f8' (float32, float64)" +
+              (integer_unit ? ", or '<u2' (uint16)" : ""));
 }
 
 template <class Decode>
@@ -283,8 +295,56 @@ std::string encode_pfm(View<const float> disparity_px) {
 Image<float> load_disparity(const fs::path& path, const Pool& pool) {
   const Form form = form_of(path, false);
   if (form == Form::png) return load_png(path, pool);
-  if (form == Form::npy) return load_floats(path, pool, sizeof(double), decode_npy);
+  if (form == Form::npy) {
+    return load_floats(path, pool, sizeof(double),
+                       [](std::string_view file, const Pool& of) { return decode_npy(file, of); });
+  }
   return load_floats(path, pool, sizeof(float), decode_pfm);
+}
+
+Image<float> load_depth(const fs::path& path, double units_per_m, const Pool& pool) {
+  const auto unit = static_cast<float>(units_per_m);
+  Image<float> depth_m;
+  switch (form_of(path, false)) {
+    case Form::png: {
+      const Labels values = load_labels(path);
+      if (values.bits != 16) throw Error(path.string() + ": has 8 bits, expected the 16 of a depth image");
+      depth_m = divided(values.ids, unit, pool);
+      break;
+    }
+    case Form::pfm:
+      depth_m = load_floats(path, pool, sizeof(float), decode_pfm);
+      break;
+    case Form::npy:
+      depth_m = load_floats(path, pool, sizeof(double), [&](std::string_view file, const Pool& of) {
+        return decode_npy(file, of, unit);
+      });
+  }
+  for (int y = 0; y < depth_m.height(); ++y) {
+    std::replace_if(
+        depth_m.row(y), depth_m.row(y) + depth_m.width(), [](float z) { return !(z > 0); }, kHole);
+  }
+  return depth_m;
+}
+
+Image<float> load_values(const GivenMap& map, const Pool& pool) {
+  return map.depth_units_per_m ? load_depth(map.path, *map.depth_units_per_m, pool)
+                               : load_disparity(map.path, pool);
+}
+
+Image<float> load_given(const GivenMap& map, Size image, const std::optional<StereoRig>& rig,
+                        const Pool& pool) {
+  if (map.depth_units_per_m && !rig) {
+    throw Error(
+        map.path.string() +
+        ": is a depth image, which needs the focal length: expected a calibration with fx, cx and cy");
+  }
+  Image<float> values = load_values(map, pool);
+  if (values.size() != image) {
+    throw Error(map.path.string() + ": the " + (map.depth_units_per_m ? "depth image" : "disparity map") +
+                " is " + text(values.size()) + ", the left image is " + text(image));
+  }
+  return map.depth_units_per_m ? disparity_of_depth(values, *rig, pool) : std::move(values);
 }
 
 void save_disparity(const fs::path& path, View<const float> disparity_px) {

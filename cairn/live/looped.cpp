@@ -45,6 +45,7 @@ class LoopedSequence : public Sequence {
   [[nodiscard]] std::optional<int> disparities() const override { return inner_->disparities(); }
   [[nodiscard]] const KnownGround& ground() const override { return inner_->ground(); }
   [[nodiscard]] const io::Rectifier* rectifier() const override { return inner_->rectifier(); }
+  [[nodiscard]] std::string frame_id() const override { return inner_->frame_id(); }
   [[nodiscard]] std::string stamps_from() const override { return inner_->stamps_from(); }
   [[nodiscard]] const std::vector<input::SourceRemark>& remarks() const override { return inner_->remarks(); }
   [[nodiscard]] const std::string& ended_early() const override { return inner_->ended_early(); }

@@ -134,9 +134,9 @@ std::shared_ptr<LiveFrame> Runner::next() {
 }
 
 void Runner::prefetch(const input::SequenceFrame& pair) {
-  if (options_.step) return;
+  if (options_.step || !pair.disparity_px.empty()) return;
   if (single_) {
-    single_->begin(StereoPair::from(pair.left.gray, pair.right, pair.left.rgb));
+    single_->begin(input::pair_of(pair));
   } else {
     follow_.prefetch(pair);
   }
@@ -231,7 +231,9 @@ TrackedFrame Runner::step_of(const input::SequenceFrame& pair) {
   step.index = frames_;
   step.stamp = pair.stamp;
   step.is_lost = true;
-  step.frame = single_->segment(StereoPair::from(pair.left.gray, pair.right, pair.left.rgb));
+  step.frame = pair.disparity_px.empty()
+                   ? single_->segment(input::pair_of(pair))
+                   : single_->segment({pair.left.gray, pair.left.rgb}, pair.disparity_px);
   return step;
 }
 
@@ -270,7 +272,7 @@ std::shared_ptr<LiveFrame> Runner::work(PairPtr pair, const input::SourceStatus&
 void Runner::judge(LiveFrame& frame, const input::SequenceFrame& pair) {
   if (!frame.step.frame.disparity.disparity_px.empty()) {
     frame.changes = watch_.next(frame.step.frame, pair.left.gray, pair.right, source_.rig(),
-                                used_config_->segmentation, exec_);
+                                used_config_->segmentation, exec_, pair.disparity_px);
   }
   frame.findings = watch_.findings();
 }

@@ -81,6 +81,8 @@ class Runner {
   [[nodiscard]] bool was_ended() const { return was_ended_; }
   /// The landmarks after the last frame; by the thread of run().
   [[nodiscard]] const LandmarkUpdate& marked() const { return follow_.marked(); }
+  /// See SequenceRun::assumptions().
+  [[nodiscard]] std::vector<std::string> assumptions() const { return follow_.assumptions(); }
 
   // From any thread:
 

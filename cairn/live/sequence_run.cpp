@@ -11,6 +11,8 @@
 #include <utility>
 
 #include <cairn/input/camera/without_password.hpp>
+#include <cairn/input/mcap_sequence.hpp>
+#include <cairn/input/open_parts.hpp>
 #include <cairn/output/trajectory_files.hpp>
 
 namespace cairn::live {
@@ -40,12 +42,43 @@ std::optional<Pose> pose_at(const std::vector<TimedPose>& poses, Stamp stamp, co
   return best->map_from_camera;
 }
 
+/// The topics among these files.
+input::SensorTopicNames topics_among(const SensorFiles& files) {
+  const auto topic = [](const std::optional<fs::path>& file) {
+    return file ? input::topic_in(file->string()).value_or("") : "";
+  };
+  return {topic(files.odometry), topic(files.imu), topic(files.scan)};
+}
+
+/// The topics of the recording that the source is. Throws Error if it is none.
+input::SensorTopics recorded(const input::SensorTopicNames& names, const std::string& source_name,
+                             const input::Sequence& source) {
+  const auto recording = input::recording_of(source_name);
+  if (!recording) {
+    const std::string& topic = !names.odometry.empty() ? names.odometry
+                               : !names.imu.empty()    ? names.imu
+                                                       : names.scan;
+    throw Error("ros2:" + topic + ": is a topic, expected a recording (MCAP)" +
+                (source.status().is_live ? "" : " or a live source") + ", found " + source.name());
+  }
+  return input::read_sensor_topics(*recording, names, source.frame_id());
+}
+
 }  // namespace
 
 std::unique_ptr<input::MotionPriors> open_priors(const std::optional<fs::path>& odometry,
                                                  const std::optional<fs::path>& imu,
                                                  const std::string& source_name,
-                                                 const input::Sequence& source) {
+                                                 const input::Sequence& source,
+                                                 std::vector<std::string>* assumptions) {
+  SensorFiles files;
+  files.odometry = odometry;
+  files.imu = imu;
+  if (const auto names = topics_among(files); names.any()) {
+    const input::SensorTopics topics = recorded(names, source_name, source);
+    if (assumptions != nullptr) std::ranges::copy(topics.assumptions(), std::back_inserter(*assumptions));
+    return topics.priors();
+  }
   if (odometry) return input::load_odometry(*odometry, source_name);
   if (imu) return input::load_imu(*imu, input::mounting_of_imu(*imu, source.rectifier()).value_or(Pose{}));
   return nullptr;
@@ -56,14 +89,28 @@ SequenceRun::SequenceRun(const input::Sequence& source, std::string source_name,
     : source_(source),
       source_name_(std::move(source_name)),
       follower_(std::move(config), source.rig(), std::move(exec)),
-      priors_(open_priors(files.odometry, files.imu, source_name_, source)),
       is_map_read_only_(files.is_map_read_only),
       start_(files.start) {
   if (files.poses) {
     poses_name_ = files.poses->string();
     poses_ = known_poses(*files.poses);
   }
-  if (files.scan) scans_ = input::load_scans(*files.scan);
+  const input::SensorTopicNames topics = topics_among(files);
+  const bool is_live = source.status().is_live;
+  if (topics.any() && is_live && source.status().clock == "monotonic") {
+    throw Error(source.name() +
+                ": its stamps count from the start of the computer, those of ROS topics from 1970: expected "
+                "images from ros2:, too");
+  }
+  if (topics.any() && is_live) live_ = input::open_sensor_topics(topics, source.frame_id());
+  const bool has_live_motion = is_live && !(topics.odometry.empty() && topics.imu.empty());
+  if (!has_live_motion) priors_ = open_priors(files.odometry, files.imu, source_name_, source, &assumptions_);
+  if (files.scan && topics.scan.empty()) scans_ = input::load_scans(*files.scan);
+  if (!topics.scan.empty() && !is_live) {
+    const input::SensorTopics lasers = recorded({{}, {}, topics.scan}, source_name_, source);
+    scans_ = lasers.scans();
+    std::ranges::copy(lasers.assumptions(), std::back_inserter(assumptions_));
+  }
   if (files.map) {
     map_.emplace(
         MapFile::open(*files.map, is_map_read_only_ ? MapMode::read_only : MapMode::update, source.rig()));
@@ -86,10 +133,16 @@ TrackedFrame SequenceRun::next(const input::SequenceFrame& frame) {
   }
   if (priors_ && has_begun_ && !is_set_back)
     prior = priors_->between(before_, frame.stamp, camera_from_level(pose_before_));
+  if (live_ && has_begun_ && !is_set_back && !prior)
+    prior = live_->between(before_, frame.stamp, camera_from_level(pose_before_));
   if (frame.after_gap) follower_.forget();
-  TrackedFrame step =
-      follower_.next(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb), frame.stamp, prior,
-                     pose_at(poses_, frame.stamp, poses_name_), input::scan_at(scans_, frame.stamp));
+  const std::optional<Pose> pose = pose_at(poses_, frame.stamp, poses_name_);
+  const std::optional<LaserScan> live_scan = live_ ? live_->scan_at(frame.stamp) : std::nullopt;
+  const LaserScan* const scan = live_scan ? &*live_scan : input::scan_at(scans_, frame.stamp);
+  TrackedFrame step = frame.disparity_px.empty()
+                          ? follower_.next(input::pair_of(frame), frame.stamp, prior, pose, scan)
+                          : follower_.next({frame.left.gray, frame.left.rgb}, frame.disparity_px, frame.stamp,
+                                           prior, pose, scan);
   if (source_.rig()) mark(step, frame);
   has_begun_ = true;
   before_ = step.stamp;
@@ -98,7 +151,7 @@ TrackedFrame SequenceRun::next(const input::SequenceFrame& frame) {
 }
 
 void SequenceRun::prefetch(const input::SequenceFrame& frame) {
-  follower_.prefetch(StereoPair::from(frame.left.gray, frame.right, frame.left.rgb));
+  if (frame.disparity_px.empty()) follower_.prefetch(input::pair_of(frame));
 }
 
 void SequenceRun::mark(const TrackedFrame& step, const input::SequenceFrame& frame) {

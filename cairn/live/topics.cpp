@@ -3,10 +3,12 @@
 #include <cairn/live/topics.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cairn/io/raster.hpp>
 #include <cairn/live/view/frame_json.hpp>
 #include <cairn/ros/from_step.hpp>
 #include <cmath>
+#include <cstdio>
 
 namespace cairn::live {
 namespace {
@@ -21,6 +23,13 @@ ros::FrameNames names_of(const LiveFrame& frame, const MessageForm& form) {
 
 ros::Header header_of(const LiveFrame& frame, const MessageForm& form) {
   return ros::header_of(frame.step.stamp, names_of(frame, form).camera);
+}
+
+/// Three digits are enough for people.
+std::string short_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
 }
 
 bool is_same(View<const Gray> a, View<const Gray> b) {
@@ -48,7 +57,20 @@ Message left_grey(const LiveFrame& frame, const MessageForm& form) {
 }
 
 Message right(const LiveFrame& frame, const MessageForm& form) {
+  if (!frame.pair->disparity_px.empty()) return std::nullopt;  // not processed
   return ros::encode(ros::image_of(header_of(frame, form), frame.pair->right.view()));
+}
+
+/// Given disparities, which were processed instead of a right image.
+Message given_disparity(const LiveFrame& frame, const MessageForm& form) {
+  const View<const float> disparity_px = frame.pair->disparity_px;
+  if (disparity_px.empty()) return std::nullopt;
+  ros::DisparityImage message = ros::disparity_image_of(header_of(frame, form), disparity_px, form.rig,
+                                                        frame.config->segmentation.match);
+  // The search range is the matcher's.
+  message.min_disparity = -kMaxDisparity;
+  message.max_disparity = kMaxDisparity;
+  return ros::encode(message);
 }
 
 template <ros::Side side>
@@ -97,6 +119,55 @@ Message stats(const LiveFrame& frame, const MessageForm& form) {
                  {"findings", output::json_of(frame.findings)},
                  {"revision", frame.revision}};
   return ros::encode(ros::String{output::json_text(all)});
+}
+
+ros::DiagnosticStatus empty_status(const LiveFrame& frame, const MessageForm& form) {
+  ros::DiagnosticStatus status;
+  status.name = "cairn: perception";
+  status.hardware_id = names_of(frame, form).camera;
+  return status;
+}
+
+/// In the convention of ROS: one status, its level by what a planner should know first.
+Message diagnostics(const LiveFrame& frame, const MessageForm& form) {
+  const Reliability& judged = frame.step.reliability;
+  ros::DiagnosticStatus status = empty_status(frame, form);
+  const auto raise = [&](std::byte level, const std::string& message) {
+    if (level < status.level || (level == status.level && !status.message.empty())) return;
+    status.level = level;
+    status.message = message;
+  };
+  const auto add = [&](const std::string& key, const std::string& value) {
+    status.values.push_back({key, value});
+  };
+  for (const Finding& finding : frame.findings) {
+    if (finding.severity == Severity::broken)
+      raise(ros::DiagnosticStatus::kError, std::string(info(finding.kind).name));
+  }
+  const bool has_tracks = !frame.step.ids.empty();
+  if (has_tracks && form.rig && frame.step.is_lost)
+    raise(ros::DiagnosticStatus::kError, "place of the camera unknown");
+  if (judged.is_unreliable) raise(ros::DiagnosticStatus::kWarn, "unreliable, weakest: " + judged.weakest);
+  for (const Finding& finding : frame.findings) {
+    if (finding.severity == Severity::warning)
+      raise(ros::DiagnosticStatus::kWarn, std::string(info(finding.kind).name));
+  }
+  raise(ros::DiagnosticStatus::kOk, "ok");
+  add("reliability", judged.value ? short_text(double{*judged.value}) : "unknown");
+  add("weakest", judged.weakest);
+  for (const WitnessName& witness : kWitnesses) {
+    const std::optional<float> value = judged.witnesses.*witness.value;
+    add("reliability/" + std::string(witness.name), value ? short_text(double{*value}) : "unknown");
+  }
+  add("objects", std::to_string(frame.step.frame.objects.list.size()));
+  add("tracks", std::to_string(frame.step.tracks.list.size()));
+  add("rate_hz", short_text(frame.rate_hz));
+  add("image_to_objects_ms", short_text(ms_between(frame.arrived, frame.done)));
+  add("dropped", std::to_string(frame.drops.at_source + frame.drops.replaced + frame.drops.too_old));
+  add("revision", std::to_string(frame.revision));
+  for (const Finding& finding : frame.findings)
+    add("finding: " + std::string(info(finding.kind).name), finding.says);
+  return ros::encode(ros::DiagnosticArray{ros::header_of(frame.step.stamp, ""), {std::move(status)}});
 }
 
 Message transforms(const LiveFrame& frame, const MessageForm& form) {
@@ -202,7 +273,9 @@ constexpr std::array kTopics{
     // name, made by, recorded with, order on ROS 2, number in the view
     of_ros<ros::Image>("/stereo/left/image_rect", left, kInput),
     of_ros<ros::Image>("/stereo/left/image_grey", left_grey, kInput, 0, 0, Announcement::with_first_message),
-    of_ros<ros::Image>("/stereo/right/image_rect", right, kInput),
+    of_ros<ros::Image>("/stereo/right/image_rect", right, kInput, 0, 0, Announcement::with_first_message),
+    of_ros<ros::DisparityImage>("/stereo/disparity", given_disparity, kInput, 0, 0,
+                                Announcement::with_first_message),
     of_ros<ros::CameraInfo>("/stereo/left/camera_info", camera_info<ros::Side::left>, kInput, 0, 0,
                             Announcement::with_rig),
     of_ros<ros::CameraInfo>("/stereo/right/camera_info", camera_info<ros::Side::right>, kInput, 0, 0,
@@ -220,6 +293,12 @@ constexpr std::array kTopics{
     of_ros<ros::OccupancyGrid>("grid", grid, &RecordWhat::grid, 4),
     of_ros<ros::CompressedImage>("left", left_compressed, nullptr, 0, 1),
     of_ros<ros::Image>("disparity", disparity_picture, nullptr, 0, 4),
+    Topic{.name = kDiagnosticsTopic,
+          .type = ros::DiagnosticArray::kType,
+          .schema = &schema_of<ros::DiagnosticArray>,
+          .make = diagnostics,
+          .published = 10,
+          .interval = std::chrono::seconds(1)},
     Topic{
         .name = "scene", .type = "foxglove.SceneUpdate", .schema = &scene_schema, .make = scene, .viewed = 7},
     Topic{.name = "stats", .type = "cairn.Stats", .schema = &stats_schema, .make = nullptr, .viewed = 8},
@@ -252,13 +331,25 @@ MessagePtr message_of(const Topic& topic, const LiveFrame& frame, const MessageF
   return *made ? MessagePtr(made, &**made) : nullptr;
 }
 
+ros::Bytes silence_message(const LiveFrame& last, const MessageForm& form, double seconds) {
+  ros::DiagnosticStatus status = empty_status(last, form);
+  status.level = ros::DiagnosticStatus::kError;
+  status.message = "no frame for " + short_text(seconds) + " s";
+  const auto ns = static_cast<std::int64_t>(seconds * 1e9);
+  return ros::encode(
+      ros::DiagnosticArray{ros::header_of({last.step.stamp.ns + ns}, ""), {std::move(status)}});
+}
+
 std::shared_ptr<const Json> results_of(const LiveFrame& frame, const MessageForm& form) {
   return frame.products.get("results", [&] {
     const input::SequenceFrame& pair = *frame.pair;
     if (form.tracks) return output::json_of(frame.step, pair.name, frame.landmarks, pair.frame_id);
-    return output::json_of(
-        frame.step.frame,
-        {form.preset, frame.config->segmentation, form.rig, {}, false, frame.step.stamp.ns});
+    return output::json_of(frame.step.frame, {form.preset,
+                                              frame.config->segmentation,
+                                              form.rig,
+                                              {},
+                                              !frame.pair->disparity_px.empty(),
+                                              frame.step.stamp.ns});
   });
 }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -50,6 +51,7 @@ struct Topic {
   // Parts of MessageForm that change it.
   bool has_stride = false;
   bool has_holes = false;
+  std::chrono::milliseconds interval{0};  // on ROS 2, at least; 0: with every frame
 };
 
 /// In the order of recordings.
@@ -61,6 +63,10 @@ std::string full_name(const Topic& topic, const std::string& name_space = "/cair
 /// Null if the frame lacks the data. Throws Error if a message cannot hold the stamp of the frame, or its image
 /// cannot be encoded.
 MessagePtr message_of(const Topic& topic, const LiveFrame& frame, const MessageForm& form);
+
+/// /diagnostics while no pair arrives: an error, so many seconds after the last frame.
+ros::Bytes silence_message(const LiveFrame& last, const MessageForm& form, double seconds);
+constexpr std::string_view kDiagnosticsTopic = "/diagnostics";
 
 /// The frame as in tracks.jsonl; without tracking as in objects.json.
 std::shared_ptr<const output::Json> results_of(const LiveFrame& frame, const MessageForm& form);

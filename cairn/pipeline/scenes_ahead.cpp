@@ -99,12 +99,14 @@ struct ScenesAhead::Work {
   std::unique_ptr<Begun> begun{};                // null: nothing was begun with this pair
   std::array<std::unique_ptr<Begun>, 2> late{};  // begun before it, and never asked for
 
-  Work(ScenesAhead& of, const StereoPair& pair) : owner(of) {
+  /// `pair`: nullptr for external disparities, of which none is begun.
+  Work(ScenesAhead& of, const StereoPair* pair) : owner(of) {
     const std::lock_guard lock(owner.mutex_);
     exec = owner.exec_;
     config = owner.config_;
-    validate(*config, pair.size(), owner.rig_.has_value());
-    if (owner.is_open_) take_lane(pair);
+    if (pair == nullptr) return;
+    validate(*config, pair->size(), owner.rig_.has_value());
+    if (owner.is_open_) take_lane(*pair);
   }
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
@@ -189,10 +191,17 @@ ScenesAhead::Lane* ScenesAhead::oldest(const std::function<bool(const Begun&)>& 
 }
 
 Frame ScenesAhead::segment(const StereoPair& pair, const ObjectChoice& choose) {
-  const Work work(*this, pair);
+  const Work work(*this, &pair);
   const Run run{rig_, *work.config, work.exec};
   if (work.begun) return work.begun->finish(run, choose);
   return whole_frame(FrameInput::from(pair), run, choose);
+}
+
+Frame ScenesAhead::segment(const LeftImage& left, View<const float> disparity_px,
+                           const ObjectChoice& choose) {
+  const Work work(*this, nullptr);
+  FrameInput in{left, {}, with_holes_marked(disparity_px, work.exec)};
+  return whole_frame(std::move(in), {rig_, *work.config, work.exec}, choose);
 }
 
 void ScenesAhead::set_config(Config config) {

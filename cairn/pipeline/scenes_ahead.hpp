@@ -29,6 +29,9 @@ class ScenesAhead {
   /// that was begun, the observer gets the stages up to the choice now, with their times and without results. Throws
   /// Error like segment().
   Frame segment(const StereoPair& pair, const ObjectChoice& choose = {});
+  /// The frame of external disparities, of which none is begun: NaN and ±inf are holes, and there may be nothing else.
+  /// All sizes are the same.
+  Frame segment(const LeftImage& left, View<const float> disparity_px, const ObjectChoice& choose = {});
   /// From the next begin() and segment() on; drops what was begun. Throws Error like validate(config), without any
   /// change.
   void set_config(Config config);

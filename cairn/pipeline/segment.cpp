@@ -14,15 +14,34 @@ ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {
   return {config.min_confidence, static_cast<std::int64_t>(least)};
 }
 
+namespace {
+
+void check(const FrameInput& in, const Run& run) {
+  const Size size = in.left.gray.size();
+  if (!in.right.empty()) {
+    validate(run.config, size, run.rig.has_value());
+  } else if (in.disparity.disparity_px.size() == size) {
+    validate(run.config);
+  } else {
+    throw Error("external disparity: the map is " + text(in.disparity.disparity_px.size()) +
+                ", the left image " + text(size));
+  }
+}
+
+}  // namespace
+
 StereoResult estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
                                 const Config& config, const Exec& exec) {
-  validate(config, pair.size(), rig.has_value());
+  return estimate_disparity(FrameInput::from(pair), {rig, config, exec});
+}
+
+StereoResult estimate_disparity(FrameInput in, const Run& run) {
+  check(in, run);
+  const auto& [rig, config, exec] = run;
   StageClock stage(exec);
-  FrameInput in = FrameInput::from(pair);
   const bool by_paper = config.pipeline.method == Method::paper;
-  auto [stereo, matches, right, textured_px] = by_paper
-                                                   ? stereo_by_paper(in, {rig, config, exec}, stage)
-                                                   : stereo_by_region_tree(in, {rig, config, exec}, stage);
+  auto [stereo, matches, right, textured_px] =
+      by_paper ? stereo_by_paper(in, run, stage) : stereo_by_region_tree(in, run, stage);
   stereo.floor = stage("label_floor", label_floor(stereo.disparity, stereo.ground, rig, config.ground, exec));
   stereo.confidence =
       stage("estimate_confidence",
@@ -36,15 +55,7 @@ Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const
 }
 
 Frame segment(FrameInput in, const Run& run) {
-  const Size size = in.left.gray.size();
-  if (!in.right.empty()) {
-    validate(run.config, size, run.rig.has_value());
-  } else if (in.disparity.disparity_px.size() == size) {
-    validate(run.config);
-  } else {
-    throw Error("external disparity: the map is " + text(in.disparity.disparity_px.size()) +
-                ", the left image " + text(size));
-  }
+  check(in, run);
   return run.config.pipeline.method == Method::paper ? segment_by_paper(std::move(in), run)
                                                      : segment_by_region_tree(std::move(in), run);
 }

@@ -42,6 +42,9 @@ ChoiceLimits limits_of(const ObjectsConfig& config, Size image);
 StereoResult estimate_disparity(const StereoPair& pair, const std::optional<StereoRig>& rig,
                                 const Config& config, const Exec& exec);
 
+/// The same, also for external disparities. Throws Error if sizes differ.
+StereoResult estimate_disparity(FrameInput in, const Run& run);
+
 /// The whole method. Throws Error like validate(); it has no other failures.
 Frame segment(const StereoPair& pair, const std::optional<StereoRig>& rig, const Config& config,
               const Exec& exec);

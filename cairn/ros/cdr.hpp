@@ -26,6 +26,9 @@ template <class T>
 concept Message = requires {
   T::kType;
 };
+/// A number, or ROS' byte.
+template <class T>
+concept CdrValue = std::is_arithmetic_v<T> || std::is_same_v<T, std::byte>;
 
 /// Plain CDR (XCDR1), little endian, as ROS 2 sends and records messages: a header of four bytes, then the
 /// members, each number aligned to its own size counted from the end of the header.
@@ -37,8 +40,7 @@ class CdrWriter {
   [[nodiscard]] Bytes take() { return std::move(bytes_); }
 
  private:
-  template <class T>
-  requires std::is_arithmetic_v<T>
+  template <CdrValue T>
   void put(const T& value) {
     const std::size_t at = aligned(bytes_.size(), sizeof(T));
     bytes_.resize(at + sizeof(T));
@@ -108,8 +110,7 @@ class CdrReader {
   }
 
  private:
-  template <class T>
-  requires std::is_arithmetic_v<T>
+  template <CdrValue T>
   void get(T& value) {
     at_ = (at_ - kHeader + sizeof(T) - 1) / sizeof(T) * sizeof(T) + kHeader;
     need(sizeof(T));

@@ -173,13 +173,30 @@ Size image_size_of(const CameraInfo& info) {
   return {static_cast<int>(published.width), static_cast<int>(published.height)};
 }
 
+namespace {
+
+void check_size(const CameraInfo& info, std::optional<Size> images) {
+  const Size size = image_size_of(info);
+  if (!images || size.area() == 0 || size == *images) return;
+  throw Error("camera_info: is of images of " + text(size) + ", expected " + text(*images) + " as they come");
+}
+
+}  // namespace
+
+std::optional<StereoRig> one_camera_of(const CameraInfo& info, bool is_raw, std::optional<Size> images) {
+  check_size(info, images);
+  const CameraInfo published = as_published(info);
+  // Drivers of depth cameras often leave P empty, since their images have no distortion.
+  const auto& [p, k] = std::pair(published.p, published.k);
+  const bool has_p = p[0] > 0 && !(is_raw && k[0] > 0);
+  const StereoRig camera{static_cast<float>(has_p ? p[0] : k[0]), static_cast<float>(has_p ? p[2] : k[2]),
+                         static_cast<float>(has_p ? p[6] : k[5])};
+  if (!(camera.focal_px > 0)) return std::nullopt;
+  return camera;
+}
+
 StereoRig rig_of(const CameraInfo& left_info, const CameraInfo& right_info, std::optional<Size> images) {
-  for (const CameraInfo* info : {&left_info, &right_info}) {
-    const Size size = image_size_of(*info);
-    if (!images || size.area() == 0 || size == *images) continue;
-    throw Error("camera_info: is of images of " + text(size) + ", expected " + text(*images) +
-                " as they come");
-  }
+  for (const CameraInfo* info : {&left_info, &right_info}) check_size(*info, images);
   const CameraInfo left = as_published(left_info);
   const CameraInfo right = as_published(right_info);
   if (!(left.p[0] > 0) || !(right.p[0] > 0)) {
@@ -208,7 +225,12 @@ StereoRig rig_of(const CameraInfo& left_info, const CameraInfo& right_info, std:
 DisparityImage disparity_image_of(const Header& header, const Frame& frame,
                                   const std::optional<StereoRig>& rig, const MatchConfig& config,
                                   std::optional<float> hole_px) {
-  const View<const float> disparity_px = frame.disparity.disparity_px;
+  return disparity_image_of(header, View<const float>(frame.disparity.disparity_px), rig, config, hole_px);
+}
+
+DisparityImage disparity_image_of(const Header& header, View<const float> disparity_px,
+                                  const std::optional<StereoRig>& rig, const MatchConfig& config,
+                                  std::optional<float> hole_px) {
   const float offset = rig ? rig->doffs_px : 0.0F;
   DisparityImage message;
   message.header = header;

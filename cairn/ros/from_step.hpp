@@ -39,6 +39,10 @@ CameraInfo camera_info_of(const Header& header, const StereoRig& rig, Size size,
 CameraInfo as_published(CameraInfo info);
 /// The size of the images that it is of; empty if the message has none.
 Size image_size_of(const CameraInfo& info);
+/// The camera of an image, as published: a rig with a baseline of 0, nullopt if the message has no focal length. By K of
+/// raw images, else by P, or by K where P is empty. Throws Error if the message is of images of another size.
+std::optional<StereoRig> one_camera_of(const CameraInfo& info, bool is_raw,
+                                       std::optional<Size> images = std::nullopt);
 /// The rig from the P of both cameras, as published. Throws Error unless they belong to one rectified rig, in this
 /// order, and to images of this size, if given.
 StereoRig rig_of(const CameraInfo& left, const CameraInfo& right, std::optional<Size> images = std::nullopt);
@@ -46,6 +50,10 @@ StereoRig rig_of(const CameraInfo& left, const CameraInfo& right, std::optional<
 /// 32FC1 with NaN for holes, or `hole_px` if given: many ROS nodes expect min_disparity − 1. Disparities
 /// count from the principal points, so that depth = f·t / disparity for any rig.doffs_px. Without a rig f and
 /// t are 0.
+DisparityImage disparity_image_of(const Header& header, View<const float> disparity_px,
+                                  const std::optional<StereoRig>& rig, const MatchConfig& config,
+                                  std::optional<float> hole_px = std::nullopt);
+/// The same of a frame's disparities.
 DisparityImage disparity_image_of(const Header& header, const Frame& frame,
                                   const std::optional<StereoRig>& rig, const MatchConfig& config,
                                   std::optional<float> hole_px = std::nullopt);

@@ -24,6 +24,8 @@ std::string type_name() {
     return "string";
   } else if constexpr (std::is_same_v<T, bool>) {
     return "bool";
+  } else if constexpr (std::is_same_v<T, std::byte>) {
+    return "byte";
   } else if constexpr (std::is_floating_point_v<T>) {
     return "float" + std::to_string(8 * sizeof(T));
   } else {
@@ -92,6 +94,10 @@ template std::string schema_of<Detection3DArray>();
 template std::string schema_of<OccupancyGrid>();
 template std::string schema_of<TFMessage>();
 template std::string schema_of<TransformStamped>();
+template std::string schema_of<LaserScan>();
+template std::string schema_of<Imu>();
+template std::string schema_of<Odometry>();
+template std::string schema_of<DiagnosticArray>();
 template std::string schema_of<Header>();
 template std::string schema_of<String>();
 

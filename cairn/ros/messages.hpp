@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -101,6 +102,40 @@ struct PoseWithCovariance {
   }
 };
 
+struct Twist {
+  static constexpr std::string_view kType = "geometry_msgs/msg/Twist";
+  Vector3 linear;
+  Vector3 angular;
+  static void each(auto& m, auto&& visit) {
+    visit("linear", m.linear);
+    visit("angular", m.angular);
+  }
+};
+
+struct TwistWithCovariance {
+  static constexpr std::string_view kType = "geometry_msgs/msg/TwistWithCovariance";
+  Twist twist;
+  std::array<double, 36> covariance{};
+  static void each(auto& m, auto&& visit) {
+    visit("twist", m.twist);
+    visit("covariance", m.covariance);
+  }
+};
+
+struct Odometry {
+  static constexpr std::string_view kType = "nav_msgs/msg/Odometry";
+  Header header;               // frame_id: of the pose, often "odom"
+  std::string child_frame_id;  // whose pose it is, often "base_link"
+  PoseWithCovariance pose;
+  TwistWithCovariance twist;
+  static void each(auto& m, auto&& visit) {
+    visit("header", m.header);
+    visit("child_frame_id", m.child_frame_id);
+    visit("pose", m.pose);
+    visit("twist", m.twist);
+  }
+};
+
 struct Transform {
   static constexpr std::string_view kType = "geometry_msgs/msg/Transform";
   Vector3 translation;
@@ -148,6 +183,52 @@ struct Image {
     visit("is_bigendian", m.is_bigendian);
     visit("step", m.step);
     visit("data", m.data);
+  }
+};
+
+struct LaserScan {
+  static constexpr std::string_view kType = "sensor_msgs/msg/LaserScan";
+  Header header;
+  float angle_min = 0;  // rad, counter-clockwise about z from x
+  float angle_max = 0;
+  float angle_increment = 0;
+  float time_increment = 0;  // s
+  float scan_time = 0;
+  float range_min = 0;  // m
+  float range_max = 0;
+  std::vector<float> ranges;  // m; outside of range_min … range_max: no echo
+  std::vector<float> intensities;
+  static void each(auto& m, auto&& visit) {
+    visit("header", m.header);
+    visit("angle_min", m.angle_min);
+    visit("angle_max", m.angle_max);
+    visit("angle_increment", m.angle_increment);
+    visit("time_increment", m.time_increment);
+    visit("scan_time", m.scan_time);
+    visit("range_min", m.range_min);
+    visit("range_max", m.range_max);
+    visit("ranges", m.ranges);
+    visit("intensities", m.intensities);
+  }
+};
+
+struct Imu {
+  static constexpr std::string_view kType = "sensor_msgs/msg/Imu";
+  Header header;
+  Quaternion orientation;
+  std::array<double, 9> orientation_covariance{};
+  Vector3 angular_velocity;  // rad/s
+  std::array<double, 9> angular_velocity_covariance{};
+  Vector3 linear_acceleration;  // m/s²
+  std::array<double, 9> linear_acceleration_covariance{};
+  static void each(auto& m, auto&& visit) {
+    visit("header", m.header);
+    visit("orientation", m.orientation);
+    visit("orientation_covariance", m.orientation_covariance);
+    visit("angular_velocity", m.angular_velocity);
+    visit("angular_velocity_covariance", m.angular_velocity_covariance);
+    visit("linear_acceleration", m.linear_acceleration);
+    visit("linear_acceleration_covariance", m.linear_acceleration_covariance);
   }
 };
 
@@ -353,9 +434,48 @@ struct OccupancyGrid {
   }
 };
 
+struct KeyValue {
+  static constexpr std::string_view kType = "diagnostic_msgs/msg/KeyValue";
+  std::string key;
+  std::string value;
+  static void each(auto& m, auto&& visit) {
+    visit("key", m.key);
+    visit("value", m.value);
+  }
+};
+
+struct DiagnosticStatus {
+  static constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticStatus";
+  static constexpr std::byte kOk{0};
+  static constexpr std::byte kWarn{1};
+  static constexpr std::byte kError{2};
+  std::byte level = kOk;
+  std::string name;
+  std::string message;
+  std::string hardware_id;
+  std::vector<KeyValue> values;
+  static void each(auto& m, auto&& visit) {
+    visit("level", m.level);
+    visit("name", m.name);
+    visit("message", m.message);
+    visit("hardware_id", m.hardware_id);
+    visit("values", m.values);
+  }
+};
+
+struct DiagnosticArray {
+  static constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticArray";
+  Header header;
+  std::vector<DiagnosticStatus> status;
+  static void each(auto& m, auto&& visit) {
+    visit("header", m.header);
+    visit("status", m.status);
+  }
+};
+
 /// The definition of a message and its nested types, in the format of recordings and Foxglove ("ros2msg").
 /// For Image, CompressedImage, CameraInfo, PointCloud2, DisparityImage, Detection3DArray, OccupancyGrid,
-/// TFMessage, TransformStamped, Header and String.
+/// TFMessage, TransformStamped, LaserScan, Imu, Odometry, DiagnosticArray, Header and String.
 template <Message M>
 std::string schema_of();
 

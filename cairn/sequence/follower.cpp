@@ -114,11 +114,20 @@ void Follower::start_again() {
 
 TrackedFrame Follower::next(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
                             const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
-  TrackedFrame step = follow(pair, stamp, prior, map_from_camera, scan);
+  return next({{pair.left(), pair.left_rgb()}, pair.right()}, stamp, {prior, map_from_camera, scan});
+}
+
+TrackedFrame Follower::next(const LeftImage& left, View<const float> disparity_px, Stamp stamp,
+                            const std::optional<MotionPrior>& prior,
+                            const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
+  return next({left, {}, disparity_px}, stamp, {prior, map_from_camera, scan});
+}
+
+TrackedFrame Follower::next(const Seen& seen, Stamp stamp, const Known& known) {
+  TrackedFrame step = follow(seen, stamp, known);
   if (controller_) {
-    step.control = controller_->next(step, *this, [&](Follower& candidate) {
-      return candidate.follow(pair, stamp, prior, map_from_camera, scan);
-    });
+    step.control = controller_->next(
+        step, *this, [&](Follower& candidate) { return candidate.follow(seen, stamp, known); });
     if (step.control && step.control->is_set) {
       set(config_.segmentation, step.control->candidate.option, step.control->candidate.value);
       ahead_->set_config(config_.segmentation);
@@ -131,25 +140,28 @@ void Follower::prefetch(const StereoPair& pair) {
   ahead_->begin(pair);
 }
 
-void Follower::check(const StereoPair& pair, Stamp stamp) const {
+void Follower::check(const Seen& seen, Stamp stamp) const {
   const auto refuse = [&](const std::string& why) {
     throw Error("frame " + std::to_string(state_.frames) + ": " + why);
   };
-  if (state_.size && *state_.size != pair.size())
-    refuse("is " + text(pair.size()) + ", the first one is " + text(*state_.size));
+  if (seen.right.empty() && seen.disparity_px.size() != seen.size())
+    refuse("its disparity map is " + text(seen.disparity_px.size()) + ", the left image " +
+           text(seen.size()));
+  if (state_.size && *state_.size != seen.size())
+    refuse("is " + text(seen.size()) + ", the first one is " + text(*state_.size));
   if (state_.before && clock_step(*state_.before, stamp) == ClockStep::repeated) {
     refuse("its stamp " + std::to_string(stamp.ns) + " ns is not later than the one before, " +
            std::to_string(state_.before->ns) + " ns");
   }
 }
 
-Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoResult& seen,
-                             const std::optional<MotionPrior>& prior,
-                             const std::optional<Pose>& map_from_camera) {
+Motion Follower::move_camera(View<const Gray> left, Stamp stamp, const StereoResult& stereo,
+                             const Known& known) {
+  const auto& [prior, map_from_camera, scan] = known;
   OdometryState& odometry = state_.odometry;
   if (!state_.before) {
-    odometry = begin_odometry(map_from_camera.value_or(first_pose(seen.ground, rig_)));
-    state_.is_over_floor = !map_from_camera && seen.ground.plane.has_value();
+    odometry = begin_odometry(map_from_camera.value_or(first_pose(stereo.ground, rig_)));
+    state_.is_over_floor = !map_from_camera && stereo.ground.plane.has_value();
   }
   Motion motion;
   if (map_from_camera) {
@@ -166,14 +178,14 @@ Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoRe
   const Pose expected_step = has_wheels ? prior->now_from_before : odometry.last_step;
   const Image<std::uint8_t> moving =
       expected_movers(state_.remembered, state_.tracks, odometry.map_from_camera * inverse(expected_step),
-                      stamp, *rig_, pair.size(), exec_);
-  OdometryStep moved = advance_odometry(odometry, {pair.left(), seen.disparity, seen.confidence, moving},
-                                        *rig_, prior, config_.odometry);
+                      stamp, *rig_, left.size(), exec_);
+  OdometryStep moved = advance_odometry(odometry, {left, stereo.disparity, stereo.confidence, moving}, *rig_,
+                                        prior, config_.odometry);
   const Pose before = odometry.map_from_camera;
   odometry = std::move(moved.state);
   motion = moved.motion;
   if (motion.is_new_segment && state_.is_over_floor) {
-    if (const auto level = levelled(odometry.map_from_camera, seen.ground, rig_)) {
+    if (const auto level = levelled(odometry.map_from_camera, stereo.ground, rig_)) {
       odometry = stood_on_floor(std::move(odometry), *level);
       motion.now_from_before = inverse(*level) * before;
     }
@@ -181,13 +193,13 @@ Motion Follower::move_camera(const StereoPair& pair, Stamp stamp, const StereoRe
   return motion;
 }
 
-void Follower::match_tracks(TrackedFrame& step, const StereoPair& pair, const MaskPrediction& predicted,
+void Follower::match_tracks(TrackedFrame& step, const LeftImage& left, const MaskPrediction& predicted,
                             const Covariance6& since_key, const StereoRig& rig) {
   const Frame& frame = step.frame;
   const TrackingConfig& config = config_.tracking;
   const CameraAt camera{step.stamp, step.map_from_camera, since_key, step.is_lost};
   const Overlaps overlaps = overlaps_of(predicted, state_.tracks, frame.objects, frame.disparity);
-  const auto detections = detect(frame, {pair.left(), pair.left_rgb()}, rig_, config);
+  const auto detections = detect(frame, left, rig_, config);
   const auto matches = step.is_lost ? std::vector<Assignment>{}
                                     : associate(state_.tracks, detections, overlaps, camera, config);
   state_.tracks = advance_tracks(std::move(state_.tracks), detections, matches, overlaps, camera, config);
@@ -197,28 +209,27 @@ void Follower::match_tracks(TrackedFrame& step, const StereoPair& pair, const Ma
   step.ids = ids_of(state_.tracks, frame.objects, exec_);
 }
 
-TrackedFrame Follower::follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
-                              const std::optional<Pose>& map_from_camera, const LaserScan* scan) {
-  check(pair, stamp);
+TrackedFrame Follower::follow(const Seen& seen, Stamp stamp, const Known& known) {
+  check(seen, stamp);
   if (state_.before && clock_step(*state_.before, stamp) == ClockStep::set_back) start_again();
   TrackedFrame step;
   step.index = state_.frames;
   step.stamp = stamp;
   const Config& config = config_.segmentation;
-  validate(config, pair.size(), rig_.has_value());
-  const StereoRig rig = rig_.value_or(picture_rig(pair.size()));
+  if (!seen.right.empty()) validate(config, seen.size(), rig_.has_value());
+  const StereoRig rig = rig_.value_or(picture_rig(seen.size()));
   Covariance6 since_key{};
   MaskPrediction warped;
   // The motion of the camera, and the tracks as predicted for this frame.
   const auto predict = [&](const StereoResult& stereo) {
-    step.motion = move_camera(pair, stamp, stereo, prior, map_from_camera);
+    step.motion = move_camera(seen.left.gray, stamp, stereo, known);
     step.map_from_camera = state_.odometry.map_from_camera;
     step.pose_covariance = state_.odometry.covariance;
     step.is_lost = state_.odometry.lost;
     since_key = covariance_since_key(state_.odometry);
     state_.tracks = rebased_to_keyframe(std::move(state_.tracks), step.map_from_camera,
                                         state_.odometry.key_covariance, step.motion.is_new_segment);
-    warped = warp(state_.remembered, state_.tracks, step.map_from_camera, stamp, rig, pair.size(), exec_);
+    warped = warp(state_.remembered, state_.tracks, step.map_from_camera, stamp, rig, seen.size(), exec_);
   };
 
   // Segment the frame; in a tree of regions, the tracks help to choose the objects.
@@ -233,17 +244,20 @@ TrackedFrame Follower::follow(const StereoPair& pair, Stamp stamp, const std::op
     }
     return choose_candidates(found.tree, scores, limits, config_.tracking.low_confidence);
   };
-  step.frame = ahead_->segment(pair, choose);
+  step.frame = seen.right.empty()
+                   ? ahead_->segment(seen.left, seen.disparity_px, choose)
+                   : ahead_->segment(StereoPair::from(seen.left.gray, seen.right, seen.left.rgb), choose);
   if (config.pipeline.method == Method::paper) predict(step.frame);
-  state_.size = pair.size();
+  state_.size = seen.size();
   state_.before = stamp;
   ++state_.frames;
 
-  match_tracks(step, pair, warped, since_key, rig);
+  match_tracks(step, seen.left, warped, since_key, rig);
 
   const bool looks_for_floor = config.ground.source == GroundSource::automatic;
-  state_.reliability =
-      assess_reliability(step, warped, {pair, best_right, rig_, looks_for_floor, scan}, state_.reliability);
+  state_.reliability = assess_reliability(
+      step, warped, {seen.left.gray, seen.right, best_right, rig_, looks_for_floor, known.scan},
+      state_.reliability);
   step.reliability = state_.reliability;
   return step;
 }

@@ -51,6 +51,12 @@ class Follower {
                     const std::optional<MotionPrior>& prior = std::nullopt,
                     const std::optional<Pose>& map_from_camera = std::nullopt,
                     const LaserScan* scan = nullptr);
+  /// The same with external disparities (depth camera, learned matcher), of the size of the left image, which are
+  /// taken instead of those of a pair: NaN and ±inf are holes.
+  TrackedFrame next(const LeftImage& left, View<const float> disparity_px, Stamp stamp,
+                    const std::optional<MotionPrior>& prior = std::nullopt,
+                    const std::optional<Pose>& map_from_camera = std::nullopt,
+                    const LaserScan* scan = nullptr);
 
   /// Begins the segmentation of the pair after the next one, see Segmenter::prefetch(): call it before next(), or from
   /// another thread at any time. It is dropped when options of the segmentation change. Throws Error if the
@@ -73,20 +79,33 @@ class Follower {
   void set_config(FollowConfig config);
 
  private:
+  /// A pair, or the left image and external disparities.
+  struct Seen {
+    LeftImage left;
+    View<const Gray> right{};
+    View<const float> disparity_px{};
+    [[nodiscard]] Size size() const { return left.gray.size(); }
+  };
+  /// What other sensors know.
+  struct Known {
+    const std::optional<MotionPrior>& prior;
+    const std::optional<Pose>& map_from_camera;
+    const LaserScan* scan;
+  };
+
   /// Matches the frame's objects with the tracks, which advance.
-  void match_tracks(TrackedFrame& step, const StereoPair& pair, const MaskPrediction& predicted,
+  void match_tracks(TrackedFrame& step, const LeftImage& left, const MaskPrediction& predicted,
                     const Covariance6& since_key, const StereoRig& rig);
-  TrackedFrame follow(const StereoPair& pair, Stamp stamp, const std::optional<MotionPrior>& prior,
-                      const std::optional<Pose>& map_from_camera, const LaserScan* scan);
+  TrackedFrame next(const Seen& seen, Stamp stamp, const Known& known);
+  TrackedFrame follow(const Seen& seen, Stamp stamp, const Known& known);
   void begin_control();
   /// After the clock was set back.
   void start_again();
   /// Throws Error unless the frame continues the sequence.
-  void check(const StereoPair& pair, Stamp stamp) const;
+  void check(const Seen& seen, Stamp stamp) const;
 
   /// The motion since the frame before; moves the camera of `state_`.
-  Motion move_camera(const StereoPair& pair, Stamp stamp, const StereoResult& seen,
-                     const std::optional<MotionPrior>& prior, const std::optional<Pose>& map_from_camera);
+  Motion move_camera(View<const Gray> left, Stamp stamp, const StereoResult& stereo, const Known& known);
 
   struct State {
     std::optional<Size> size;

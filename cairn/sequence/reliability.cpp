@@ -31,17 +31,16 @@ std::optional<float> known(double share) {
 // ---- stereo, photometric ----
 
 void judge_pair(const Frame& frame, const ReliabilityInputs& evidence, Witnesses& seen) {
-  if (evidence.pair.right().empty() || evidence.best_right.empty()) return;
-  const View<const Gray> left = evidence.pair.left();
+  if (evidence.right.empty() || evidence.best_right.empty()) return;
   Image<Gray> moved;
-  View<const Gray> right = evidence.pair.right();
+  View<const Gray> right = evidence.right;
   if (frame.epipolar.outcome == EpipolarOutcome::corrected) {
     moved = shift_rows(right, frame.epipolar, Exec{});
     right = moved;
   }
   const View<const float> disparity = frame.disparity.disparity_px;
   const Consistency both =
-      consistency(some_rows<Gray>(left), some_rows<Gray>(right), some_rows<float>(disparity),
+      consistency(some_rows<Gray>(evidence.left), some_rows<Gray>(right), some_rows<float>(disparity),
                   some_rows<std::int16_t>(evidence.best_right));
   std::int64_t denied = 0;
   const View<const Reject> reject = some_rows<Reject>(frame.disparity.reject);

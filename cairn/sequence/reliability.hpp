@@ -68,7 +68,8 @@ inline constexpr float kMinWitness = 0.01F;
 
 /// The inputs of judge() besides the step.
 struct ReliabilityInputs {
-  StereoPair pair;
+  View<const Gray> left;
+  View<const Gray> right;               // empty with external disparities
   View<const std::int16_t> best_right;  // see Matches; may be empty
   std::optional<StereoRig> rig;
   bool looks_for_floor = false;  // fitted to each frame, not given

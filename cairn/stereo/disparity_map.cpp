@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/stereo/disparity_map.hpp>
@@ -15,8 +16,8 @@ namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
-/// Throws unless there is a finite value, and all of them are within bounds.
-void require_values(View<const float> disparity_px) {
+/// Whether there is a finite value. Throws if one is out of bounds.
+bool has_values(View<const float> disparity_px) {
   bool any = false;
   for (int y = 0; y < disparity_px.height(); ++y) {
     for (int x = 0; x < disparity_px.width(); ++x) {
@@ -31,7 +32,7 @@ void require_values(View<const float> disparity_px) {
       }
     }
   }
-  if (!any) throw Error("external disparity: found no value in " + text(disparity_px.size()) + " pixels");
+  return any;
 }
 
 }  // namespace
@@ -58,10 +59,17 @@ DisparityMap combine(Image<float> refined_px, const std::vector<View<const Rejec
 }
 
 DisparityMap external_disparity(View<const float> disparity_px, const Exec& exec) {
-  const Size size = disparity_px.size();
   if (disparity_px.empty())
     throw Error("external disparity: found an empty map, expected at least 1x1 pixels");
-  require_values(disparity_px);
+  DisparityMap map = with_holes_marked(disparity_px, exec);
+  if (!has_values(map.disparity_px))
+    throw Error("external disparity: found no value in " + text(disparity_px.size()) + " pixels");
+  return map;
+}
+
+DisparityMap with_holes_marked(View<const float> disparity_px, const Exec& exec) {
+  (void)has_values(disparity_px);
+  const Size size = disparity_px.size();
   DisparityMap map{Image<float>(size, exec.pool), Image<Reject>(size, exec.pool)};
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
@@ -74,6 +82,18 @@ DisparityMap external_disparity(View<const float> disparity_px, const Exec& exec
     }
   });
   return map;
+}
+
+Image<float> disparity_of_depth(View<const float> depth_m, const StereoRig& rig, const Pool& pool) {
+  Image<float> disparity_px(depth_m.size(), pool);
+  const float focal_baseline = rig.focal_px * rig.baseline_m;
+  for (int y = 0; y < depth_m.height(); ++y) {
+    std::transform(depth_m.row(y), depth_m.row(y) + depth_m.width(), disparity_px.row(y), [&](float z) {
+      const float d = focal_baseline / z - rig.doffs_px;
+      return z > 0 && std::isfinite(z) && std::abs(d) <= kMaxDisparity ? d : kHole;
+    });
+  }
+  return disparity_px;
 }
 
 }  // namespace cairn

@@ -20,8 +20,13 @@ struct SourceArguments {
   double rate_hz = 0;
   std::string frames;
   bool rectify = false;
+  std::string topics;
+  std::string disparity;
+  std::string depth_image;
+  std::optional<double> depth_units;
 };
-CAIRN_TUPLE(SourceArguments, calib, layout, rate_hz, frames, rectify)
+CAIRN_TUPLE(SourceArguments, calib, layout, rate_hz, frames, rectify, topics, disparity, depth_image,
+            depth_units)
 CAIRN_TUPLE(live::SensorFiles, odometry, imu, poses, scan, map, is_map_read_only, start)
 
 CAIRN_NAMES(MotionRefusal, kMotionRefusals)
@@ -141,8 +146,8 @@ std::vector<OptionInfo> follow_options() {
 // ---- following ----
 
 output::Provenance provenance(const FollowSettings& settings, const Config& config,
-                              const std::optional<StereoRig>& rig, Stamp stamp) {
-  return {settings.segmentation.preset, config, rig, {}, false, stamp.ns};
+                              const std::optional<StereoRig>& rig, Stamp stamp, bool is_given) {
+  return {settings.segmentation.preset, config, rig, {}, is_given, stamp.ns};
 }
 
 /// Pair by pair: a step, and the provenance of its frame.
@@ -161,7 +166,17 @@ class PyFollower {
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
     const Config used = follower_.config().segmentation;  // the frame may change it for the next one
     TrackedFrame step = follower_.next(pair, Stamp{ns}, prior, pose);
-    return {std::move(step), provenance(settings_, used, calibration_.rig(), Stamp{ns})};
+    return {std::move(step), provenance(settings_, used, calibration_.rig(), Stamp{ns}, false)};
+  }
+  std::tuple<TrackedFrame, output::Provenance> next_given(const LoadedImage& left, const DisparityMap& map,
+                                                          std::int64_t ns,
+                                                          const std::optional<MotionPrior>& prior,
+                                                          const std::optional<Pose>& pose) {
+    calibration_.check(left.gray().size());
+    const std::lock_guard<std::mutex> one_at_a_time(busy_);
+    const Config used = follower_.config().segmentation;
+    TrackedFrame step = follower_.next({left.gray(), left.rgb()}, map.disparity_px, Stamp{ns}, prior, pose);
+    return {std::move(step), provenance(settings_, used, calibration_.rig(), Stamp{ns}, true)};
   }
   void prefetch(const LoadedImage& left, const LoadedImage& right) {
     const auto pair = StereoPair::from(left.gray(), right.gray(), left.rgb());
@@ -220,7 +235,8 @@ class SequenceIterator {
     const input::SequenceFrame& pair = *found->pair;
     FollowedFrame made{{pair.left.gray.clone(), pair.left.rgb.clone()},
                        std::move(found->step),
-                       provenance(settings_, found->config->segmentation, source_->rig(), pair.stamp),
+                       provenance(settings_, found->config->segmentation, source_->rig(), pair.stamp,
+                                  !pair.disparity_px.empty()),
                        pair.name,
                        pair.frame_id,
                        std::move(found->landmarks),
@@ -263,6 +279,8 @@ std::unique_ptr<SequenceIterator> follow(const FollowSettings& settings, const E
   options.layout = how.layout;
   options.rate_hz = how.rate_hz;
   options.rectify = how.rectify;
+  options.topics = how.topics;
+  options.maps = {how.disparity, how.depth_image, how.depth_units};
   if (!how.frames.empty()) options.frames = input::parse_frame_range(how.frames);
   return std::make_unique<SequenceIterator>(source, options, files, settings, exec);
 }
@@ -351,6 +369,7 @@ void bind_follow(py::module_& m) {
       .def(py::init<FollowSettings, PyCalibration, const Exec&>())
       .def("prefetch", &PyFollower::prefetch, Released())
       .def("next", &PyFollower::next, Released())
+      .def("next_given", &PyFollower::next_given, Released())
       .def("options", &PyFollower::options, Released());
   m.def("follow", &follow, Released());
   m.def(

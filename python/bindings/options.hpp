@@ -49,7 +49,8 @@ PyConfig make_config(const std::string& preset, const std::optional<std::string>
 
 CAIRN_MEMBERS(KnownGround, points, camera_height_m, camera_pitch_deg, camera_roll_deg)
 CAIRN_MEMBERS(StereoRig, focal_px, cx_px, cy_px, baseline_m, doffs_px)
-CAIRN_MEMBERS(io::Calibration, rig, image_size, num_disparities, _ground, of_raw_cameras, remarks)
+CAIRN_MEMBERS(io::Calibration, rig, image_size, num_disparities, _ground, of_raw_cameras, remarks,
+              _one_camera)
 CAIRN_MEMBERS(PyCalibration, _calibration, _path)
 CAIRN_MEMBERS(PyConfig, preset, _config, _range_given)
 

@@ -180,15 +180,22 @@ class Follower:
         self._calibration, self._exec = rig, exec
         self._pairs = _cairn.Pairs(settings(config, preset, options), rig, exec)
 
-    def next(self, left: ImageLike, right: ImageLike, stamp_ns: Optional[Any] = None, *, seconds: Optional[float] = None,
+    def next(self, left: ImageLike, right: Optional[ImageLike] = None, stamp_ns: Optional[Any] = None, *,
+             seconds: Optional[float] = None, disparity_map: Optional[DisparityLike] = None,
              prior: Optional[MotionPrior] = None, pose: Optional[MatrixLike] = None, bgr: bool = False) -> Step:
         """Processes the next frame and returns its Step. stamp_ns or seconds: time of capture, later than that of the
-        previous frame. prior: a MotionPrior since the previous frame. pose: 4 x 4 map_from_camera, if the robot knows
+        previous frame. disparity_map: an external map instead of right, as in segment(); of depths in m it is
+        rig.focal_px * rig.baseline_m / depth. prior: a MotionPrior since the previous frame. pose: 4 x 4 map_from_camera, if the robot knows
         it; no motion is estimated then. Raises cairn.Error if the size differs from that of the first pair, or the
         stamp is not later. One that is more than 1 s earlier begins a new run: the clock was set back."""
         stamp = stamp_from(stamp_ns, seconds)
         known = None if pose is None else pose_from(pose, "pose")
-        data, how = self._pairs.next(left, right, stamp, prior, known)
+        if (right is None) == (disparity_map is None):
+            raise Error("right, disparity_map: found both or neither, expected one of the two")
+        if disparity_map is None:
+            data, how = self._pairs.next(left, right, stamp, prior, known)
+        else:
+            data, how = self._pairs.next_given(left, disparity_map, stamp, prior, known)
         return Step._of(left, data, how, (str(data.index), "", []), {}, [])
 
     def prefetch(self, left: ImageLike, right: ImageLike, *, bgr: bool = False) -> None:
@@ -239,13 +246,15 @@ class Following:
 
 
 def follow(source: PathLike, *, calib: Optional[PathLike] = None, layout: str = "", rate_hz: float = 0.0, frames: str = "",
-           rectify: bool = False, odometry_file: Optional[PathLike] = None, imu_file: Optional[PathLike] = None,
+           rectify: bool = False, topics: str = "", disparity: PathLike = "", depth_image: PathLike = "",
+           depth_units: Optional[float] = None, odometry_file: Optional[PathLike] = None, imu_file: Optional[PathLike] = None,
            poses_file: Optional[PathLike] = None, map_file: Optional[PathLike] = None, read_only: bool = False,
            preset: str = "default", config: Union[Config, PathLike, None] = None, exec: Optional[Exec] = None,
            **options) -> Following:
     """Tracks camera and objects through a whole sequence. Returns a Following, an iterator of Steps.
     source: a folder of frames, a folder of KITTI or EuRoC, 'LEFT,RIGHT', or a video with layout (docs/sequences.md). calib:
-    replaces the calibration of the source. frames: 'A:B:STEP'. rectify: True for raw images. odometry_file, imu_file,
+    replaces the calibration of the source. frames: 'A:B:STEP'. rectify: True for raw images. topics, disparity,
+    depth_image, depth_units: depth from elsewhere (docs/bring_your_own_depth.md). odometry_file, imu_file,
     poses_file: motion measured by other sensors. map_file: landmarks to recognise and to extend; read_only: leaves it
     unchanged. The arguments are the options of `cairn follow` and give the same steps.
     preset, config (a Config or a file name) and options are those of segment(), plus the groups of
@@ -257,7 +266,8 @@ def follow(source: PathLike, *, calib: Optional[PathLike] = None, layout: str = 
     following = Following()
     following._exec = exec
     following._sequence = _cairn.follow(settings(config, preset, options), exec, source,
-                                        (calib or "", layout, rate_hz, frames, rectify),
+                                        (calib or "", layout, rate_hz, frames, rectify, topics, disparity, depth_image,
+                                         depth_units),
                                         (odometry_file, imu_file, poses_file, None, map_file, read_only, None))
     return following
 

@@ -214,3 +214,26 @@ def test_the_options_of_sequences_are_listed():
     assert {"odometry.max_features", "tracking.min_hits", "repair.method", "landmarks.min_frames"} <= names
     assert not names & {option.name for option in cairn.options()}
     assert cairn.Follower(tracking={"min_hits": 2})["tracking.min_hits"] == "2"
+
+
+def test_given_disparities_are_followed_as_from_a_folder_of_maps(pairs, rig, tmp_path):
+    maps = tmp_path / "maps"
+    maps.mkdir()
+    folders = [f for f in sorted(SEQUENCE.iterdir()) if f.is_dir()]
+    for folder, (left, right) in zip(folders, pairs):
+        np.save(maps / f"{folder.name}.npy", cairn.segment(left, right, rig).disparity)
+    whole = list(cairn.follow(SEQUENCE, disparity=maps))
+    follower = cairn.Follower(rig)
+    for step, folder, (left, _) in zip(whole, folders, pairs):
+        given = follower.next(left, disparity_map=np.load(maps / f"{folder.name}.npy"), stamp_ns=step.stamp_ns)
+        assert np.array_equal(given.ids, step.ids)
+        assert np.array_equal(given.map_from_camera, step.map_from_camera)
+        assert given.reliability["stereo"] is None
+        assert given.frame.confidence is None
+    assert any(step.tracks for step in whole)
+    with pytest.raises(cairn.Error, match="right, disparity_map: found both or neither"):
+        follower.next(pairs[0][0], seconds=100.0)
+    with pytest.raises(cairn.Error, match="disparity map is 4x4"):
+        follower.next(pairs[0][0], disparity_map=np.ones((4, 4), np.float32), seconds=100.0)
+    with pytest.raises(cairn.Error, match="--depth-image: found --disparity as well"):
+        cairn.follow(SEQUENCE, disparity=maps, depth_image=maps)

@@ -50,6 +50,8 @@ class TypeDescription {
       return {kind.id + 144, 0, kind.nested};
     } else if constexpr (std::is_same_v<T, bool>) {
       return {15, 0, ""};
+    } else if constexpr (std::is_same_v<T, std::byte>) {
+      return {16, 0, ""};
     } else if constexpr (std::is_floating_point_v<T>) {
       return {sizeof(T) == 4 ? 10 : 11, 0, ""};
     } else {  // int8 2, uint8 3, int16 4, …, uint64 9

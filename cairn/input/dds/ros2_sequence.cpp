@@ -9,9 +9,11 @@
 #include <cairn/io/frame_names.hpp>
 #include <cstdio>
 #include <mutex>
+#include <variant>
 
 #include <cairn/input/frame_list.hpp>
 #include <cairn/input/frame_watch.hpp>
+#include <cairn/input/ros_depth.hpp>
 #include <cairn/input/ros_pictures.hpp>
 #include <cairn/io/names_and_numbers.hpp>
 #include <cairn/ros/dds/participant.hpp>
@@ -31,7 +33,6 @@ constexpr auto kNotice = 50ms;
 constexpr auto kInfoWait = 2s;
 /// Time without a pair after which the cameras count as lost.
 constexpr auto kSilence = 3s;
-constexpr std::array kSides{"left", "right"};
 
 std::string seconds_of(double seconds) {
   std::array<char, 32> words{};
@@ -47,12 +48,12 @@ class Ros2Sequence : public SourceSequence {
         prefix_(prefix_of(source_)),
         options_(options),
         pool_(std::move(pool)),
-        topics_{topic("left"), topic("right")},
-        images_{ros::Reader<ros::Image>(participant_, topics_[0]),
-                ros::Reader<ros::Image>(participant_, topics_[1])},
-        infos_{ros::Reader<ros::CameraInfo>(participant_, prefix_ + "/left/camera_info"),
-               ros::Reader<ros::CameraInfo>(participant_, prefix_ + "/right/camera_info")},
-        wait_(participant_, {&images_[0], &images_[1]}),
+        topics_(topics_of(options)),
+        left_(participant_, topics_[0]),
+        right_(second_reader(participant_, topics_[1], options.topics)),
+        infos_{ros::Reader<ros::CameraInfo>(participant_, info_topic(0)),
+               ros::Reader<ros::CameraInfo>(participant_, info_topic(1))},
+        wait_(participant_, {&left_, &reader(1)}),
         pairing_(options.max_skew_ms, [this](std::size_t, auto&&) { ++unpaired_; }) {
     calibration_ = open_calibration(options, std::nullopt, false, false);
     first_ = opened();
@@ -91,9 +92,11 @@ class Ros2Sequence : public SourceSequence {
 
  private:
   struct ReceivedImage {
-    ros::Image image;
+    std::variant<ros::Image, ros::DisparityImage> message;
     Clock::time_point arrived;
+    [[nodiscard]] const ros::Image& image() const { return std::get<ros::Image>(message); }
   };
+  using SecondReader = std::variant<ros::Reader<ros::Image>, ros::Reader<ros::DisparityImage>>;
   using Pairing = StampPairing<ReceivedImage>;
   using Pair = Pairing::Pair;
 
@@ -103,10 +106,55 @@ class Ros2Sequence : public SourceSequence {
     const std::string name = source.substr(kPrefix.size());
     return name.empty() || name == "/" ? "" : ros::checked_name(name, "SOURCE " + source);
   }
-  [[nodiscard]] std::string topic(const char* side) const {
-    return prefix_ + "/" + side + (options_.rectify ? "/image_raw" : "/image_rect");
+  [[nodiscard]] std::array<std::string, 2> topics_of(const SourceOptions& options) const {
+    const auto of_side = [&](const char* side) {
+      return prefix_ + "/" + side + (options.rectify ? "/image_raw" : "/image_rect");
+    };
+    if (options.topics.empty()) return {of_side("left"), of_side("right")};
+    const std::size_t comma = options.topics.find(',');
+    if (comma == std::string::npos)
+      throw Error("--topics: found " + options.topics + ", expected LEFT,RIGHT or IMAGE,DEPTH");
+    // Below the name of the source, unless they begin with a slash.
+    const auto whole = [&](const std::string& name) {
+      return ros::checked_name(name.starts_with('/') ? name : prefix_ + "/" + name, "--topics");
+    };
+    return {whole(options.topics.substr(0, comma)), whole(options.topics.substr(comma + 1))};
   }
-  [[nodiscard]] std::uint64_t lost() const { return images_[0].lost() + images_[1].lost(); }
+  [[nodiscard]] std::string info_topic(std::size_t side) const {
+    return topics_[side].substr(0, topics_[side].rfind('/')) + "/camera_info";
+  }
+  /// DDS has to know the type before the first message.
+  static SecondReader second_reader(const ros::Participant& participant, const std::string& topic,
+                                    const std::string& named) {
+    const std::size_t comma = std::min(named.find(','), named.size());
+    if (named.find("disparity", comma) != std::string::npos)
+      return ros::Reader<ros::DisparityImage>(participant, topic);
+    return ros::Reader<ros::Image>(participant, topic);
+  }
+  [[nodiscard]] const ros::BytesReader& reader(std::size_t side) const {
+    if (side == 0) return left_;
+    return std::visit([](const auto& reader) -> const ros::BytesReader& { return reader; }, right_);
+  }
+  [[nodiscard]] std::uint64_t lost() const { return left_.lost() + reader(1).lost(); }
+
+  /// Whether the second one is a depth or disparity image.
+  [[nodiscard]] bool has_depth(const Pair& pair) const {
+    const auto* const second = std::get_if<ros::Image>(&pair.right.value.message);
+    if (second == nullptr) return true;
+    return !options_.topics.empty() &&
+           is_depth_of(second->encoding, pair.left.value.image().encoding, topics_[1], topics_[0]);
+  }
+
+  /// The next message of a side, with its stamp.
+  std::optional<std::pair<Stamp, ReceivedImage>> take(std::size_t side) {
+    const auto received = [](auto& reader) -> std::optional<std::pair<Stamp, ReceivedImage>> {
+      auto message = reader.take();
+      if (!message) return std::nullopt;
+      const Stamp stamp = ros::stamp_of(message->header.stamp);
+      return std::pair(stamp, ReceivedImage{std::move(*message), Clock::now()});
+    };
+    return side == 0 ? received(left_) : std::visit(received, right_);
+  }
 
   std::optional<SequenceFrame> advance() override {
     std::optional<SequenceFrame> frame;
@@ -127,12 +175,11 @@ class Ros2Sequence : public SourceSequence {
       bool is_idle = true;
       for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
         try {
-          std::optional<ros::Image> image = images_[side].take();
+          auto image = take(side);
           if (!image) continue;
           is_idle = false;
           has_come_[side] = true;
-          const Stamp stamp = ros::stamp_of(image->header.stamp);
-          pairing_.push_live(side, stamp, {std::move(*image), Clock::now()}, kMaxWaiting);
+          pairing_.push_live(side, image->first, std::move(image->second), kMaxWaiting);
           std::optional<Pair> pair = pairing_.next();
           if (!pair) continue;
           last_pair_ = Clock::now();
@@ -147,11 +194,11 @@ class Ros2Sequence : public SourceSequence {
     }
   }
 
-  /// Reads the cameras' parameters that have arrived; true if both are known.
-  bool take_infos() {
+  /// Reads the cameras' parameters that have arrived; true if those of both, or of an image with depth, are known.
+  bool take_infos(const std::optional<Pair>& pair) {
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
       while (std::optional<ros::CameraInfo> info = infos_[side].take()) last_infos_[side] = std::move(info);
-    return last_infos_[0] && last_infos_[1];
+    return last_infos_[0] && (last_infos_[1] || (pair && has_depth(*pair)));
   }
 
   /// The first frame. Throws Error.
@@ -167,7 +214,7 @@ class Ros2Sequence : public SourceSequence {
         pair = std::move(newer);
         if (!since) since = Clock::now();
       }
-      const bool has_infos = !needs_infos || take_infos();
+      const bool has_infos = !needs_infos || take_infos(pair);
       if (pair && (has_infos || Clock::now() - *since > kInfoWait)) {
         calibrate(*pair, needs_infos);
         if (std::optional<SequenceFrame> frame = frame_of(*pair)) return std::move(*frame);
@@ -190,26 +237,72 @@ class Ros2Sequence : public SourceSequence {
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
       if (has_come_[side]) continue;
       silent += (silent.empty() ? "" : " and ") + topics_[side];
-      if (!images_[side].has_writer()) unknown += (unknown.empty() ? "" : " nor ") + topics_[side];
+      if (!reader(side).has_writer()) unknown += (unknown.empty() ? "" : " nor ") + topics_[side];
     }
-    return "received nothing on " + silent + within + ", expected sensor_msgs/msg/Image" +
+    return "received nothing on " + silent + within + ", expected " +
+           (std::holds_alternative<ros::Reader<ros::DisparityImage>>(right_)
+                ? "sensor_msgs/msg/Image and stereo_msgs/msg/DisparityImage"
+                : "sensor_msgs/msg/Image") +
            (unknown.empty() ? "; there is a publisher: are messages lost (docs/ros2.md, \"Buffers\")?"
                             : "; no publisher on " + unknown +
                                   " (check ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY and the topic names)");
   }
 
   void calibrate(const Pair& pair, bool needs_infos) {
-    const Size size{static_cast<int>(pair.left.value.image.width),
-                    static_cast<int>(pair.left.value.image.height)};
-    if (calibration_.rectifier || !needs_infos) {
+    const Size size{static_cast<int>(pair.left.value.image().width),
+                    static_cast<int>(pair.left.value.image().height)};
+    if (has_depth(pair)) {
+      if (options_.rectify) throw Error("--rectify: " + topics_[1] + " belongs to a rectified image");
+      calibrate_depth(pair, size, needs_infos);
+    } else if (calibration_.rectifier || !needs_infos) {
       calibration_.suit(size);
     } else if (last_infos_[0] && last_infos_[1]) {
       calibration_.says.rig = rig_of_infos(size);
     } else {
-      const char* const side = kSides[last_infos_[0] ? 1 : 0];
       remarks_.push_back(
-          {"received nothing on " + prefix_ + "/" + side + "/camera_info: no metres (--calib FILE instead)",
+          {"received nothing on " + info_topic(last_infos_[0] ? 1 : 0) + ": no metres (--calib FILE instead)",
            0, "", false, false});
+    }
+  }
+  void calibrate_depth(const Pair& pair, Size size, bool needs_infos) {
+    if (!needs_infos) {
+      calibration_.suit(size);
+    } else if (last_infos_[0]) {
+      try {
+        const bool is_raw = topics_[0].find("raw") != std::string::npos;
+        calibration_.says.one_camera = ros::one_camera_of(*last_infos_[0], is_raw, size);
+        const auto& d = last_infos_[0]->d;
+        if (is_raw && std::ranges::any_of(d, [](double each) { return each != 0; })) {
+          remarks_.push_back(
+              {"image with distortion, expected a rectified one: positions away from its "
+               "centre are off",
+               0, topics_[0], false, false});
+        }
+      } catch (const Error& error) {
+        throw Error(source_ + ": " + error.what());
+      }
+    } else {
+      remarks_.push_back({"received nothing on " + info_topic(0) + ": no metres (--calib FILE instead)", 0,
+                          "", false, false});
+    }
+    complete(calibration_.says, depth_of(pair));
+    const auto& depth_frame =
+        std::visit([](const auto& message) -> const ros::Header& { return message.header; },
+                   pair.right.value.message)
+            .frame_id;
+    const std::string& frame = pair.left.value.image().header.frame_id;
+    if (depth_frame != frame && !depth_frame.empty()) {
+      remarks_.push_back(
+          {"depth in the frame " + depth_frame + ", its image in " + frame + ": is it aligned to the image?",
+           0, topics_[1], false, false});
+    }
+  }
+  [[nodiscard]] RosDepth depth_of(const Pair& pair) const {
+    try {
+      return std::visit([&](const auto& message) { return input::depth_of(message, pool_); },
+                        pair.right.value.message);
+    } catch (const Error& error) {
+      throw Error(topics_[1] + ": " + error.what());
     }
   }
 
@@ -223,12 +316,15 @@ class Ros2Sequence : public SourceSequence {
 
   /// nullopt if it is outside the range, or not later than the previous one.
   std::optional<SequenceFrame> frame_of(const Pair& pair) {
-    const Stamp stamp = ros::stamp_of(pair.left.value.image.header.stamp);
+    const ros::Header& header = pair.left.value.image().header;
+    const Stamp stamp = ros::stamp_of(header.stamp);
     if (!watch_.continues(stamp, io::number_text(count_), remarks_)) return std::nullopt;
     const std::size_t index = count_++;
     if (!options_.frames.contains(index)) return std::nullopt;
-    io::LoadedPair images =
-        pictures_of(pair.left.value.image, topics_[0], pair.right.value.image, topics_[1], bits_, pool_);
+    const bool is_depth = has_depth(pair);
+    const ros::Image& left = pair.left.value.image();
+    io::LoadedPair images = pictures_of(left, topics_[0], is_depth ? left : pair.right.value.image(),
+                                        topics_[is_depth ? 0 : 1], bits_, pool_);
     bits_ = images.bits;
     images = calibration_.rectified(std::move(images), pool_);
     SequenceFrame frame{
@@ -236,11 +332,19 @@ class Ros2Sequence : public SourceSequence {
         index,
         stamp,
         std::move(images.left),
-        std::move(images.right.gray),
+        is_depth ? Image<Gray>() : std::move(images.right.gray),
         false,
         std::max(pair.left.value.arrived, pair.right.value.arrived),
-        ros::camera_of(pair.left.value.image.header),
+        ros::camera_of(header),
     };
+    if (is_depth) {
+      try {
+        frame.disparity_px =
+            disparity_of(depth_of(pair), frame.left.gray.size(), calibration_.says.rig, pool_);
+      } catch (const Error& error) {
+        throw Error(topics_[1] + ": " + error.what());
+      }
+    }
     watch_.see(frame, source_, remarks_);
     return frame;
   }
@@ -267,7 +371,8 @@ class Ros2Sequence : public SourceSequence {
   Pool pool_;
   std::array<std::string, 2> topics_;
   ros::Participant participant_;
-  std::array<ros::Reader<ros::Image>, 2> images_;
+  ros::Reader<ros::Image> left_;
+  SecondReader right_;
   std::array<ros::Reader<ros::CameraInfo>, 2> infos_;
   ros::ReaderWait wait_;
   Pairing pairing_;

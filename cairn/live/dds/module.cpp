@@ -2,11 +2,17 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/live/dds/module.hpp>
 
+#include <cairn/input/dds/ros2_sensors.hpp>
 #include <cairn/input/dds/ros2_sequence.hpp>
 #include <cairn/live/dds/ros2_sink.hpp>
 
 cairn::input::Sequence* cairn_open_ros2(const cairn::input::Ros2Request& request) {
   return cairn::input::ros2_sequence(request.source, request.options, request.pool).release();
+}
+
+cairn::input::LiveSensors* cairn_open_sensor_topics(const cairn::input::SensorTopicNames& names,
+                                                    const std::string& camera) {
+  return cairn::input::ros2_sensors(names, camera).release();
 }
 
 cairn::live::Sink* cairn_publish_ros2(const cairn::live::Ros2Options& options,

@@ -18,6 +18,8 @@ using namespace std::chrono_literals;
 
 /// How long to wait at the end until readers have received the last messages.
 constexpr auto kLastWords = 1s;
+/// After which /diagnostics says that no frame arrives.
+constexpr double kSilent_s = 1;
 
 /// A topic and its counters.
 class Publisher {
@@ -27,10 +29,20 @@ class Publisher {
 
   /// Makes the message only if there are readers.
   void publish(const LiveFrame& frame, const MessageForm& form) {
+    publish([&]() -> std::optional<ros::Bytes> {
+      const MessagePtr message = message_of(topic_, frame, form);
+      return message ? std::optional(*message) : std::nullopt;
+    });
+  }
+  template <class Make>
+  void publish(const Make& make) {
     if (!writer_.has_reader()) return;
-    const MessagePtr message = message_of(topic_, frame, form);
+    const auto now = std::chrono::steady_clock::now();
+    if (last_ && now - *last_ < topic_.interval) return;
+    last_ = now;
+    std::optional<ros::Bytes> message = make();
     if (!message) return;
-    if (writer_.write(*message)) {
+    if (writer_.write(std::move(*message))) {
       ++sent_;
     } else {
       ++blocked_;
@@ -41,6 +53,7 @@ class Publisher {
     if (blocked_ > 0) text += " (" + std::to_string(blocked_) + " held up by slow readers)";
     return text;
   }
+  [[nodiscard]] bool is_of(std::string_view topic) const { return topic_.name == topic; }
   [[nodiscard]] bool has_sent() const { return sent_ + blocked_ > 0; }
   void finish(std::chrono::steady_clock::time_point deadline) const {
     const auto left = deadline - std::chrono::steady_clock::now();
@@ -51,6 +64,7 @@ class Publisher {
   const Topic& topic_;
   std::string name_;
   ros::BytesWriter writer_;
+  std::optional<std::chrono::steady_clock::time_point> last_;
   std::uint64_t sent_ = 0;
   std::uint64_t blocked_ = 0;
 };
@@ -100,7 +114,12 @@ class Ros2Sink : public Sink {
   void work() {
     while (!slot_.is_closed()) {
       const auto frame = slot_.take(200ms);
-      if (!frame) continue;
+      if (!frame) {
+        report_silence();
+        continue;
+      }
+      last_ = *frame;
+      last_at_ = std::chrono::steady_clock::now();
       try {
         form_.not_published = slot_.replaced();
         for (Publisher& publisher : publishers_) publisher.publish(**frame, form_);
@@ -110,7 +129,19 @@ class Ros2Sink : public Sink {
     }
   }
 
+  /// A camera that is lost delivers no frame that could say so.
+  void report_silence() {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - last_at_).count();
+    if (!last_ || seconds < kSilent_s) return;
+    for (Publisher& publisher : publishers_) {
+      if (publisher.is_of(kDiagnosticsTopic))
+        publisher.publish([&] { return silence_message(*last_, form_, seconds); });
+    }
+  }
+
   MessageForm form_;
+  LiveFramePtr last_;
+  std::chrono::steady_clock::time_point last_at_;
   ros::Participant participant_;
   std::deque<Publisher> publishers_;
   NewestSlot<LiveFramePtr> slot_;

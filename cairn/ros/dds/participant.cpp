@@ -92,11 +92,11 @@ std::shared_ptr<Entity> domain_of(const DomainSettings& settings) {
 
 using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
-Qos make_qos(std::string_view ros_type, bool reliable, int depth) {
+Qos make_qos(std::string_view ros_type, bool reliable, int depth, bool latched = false) {
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        kMaxBlocking);
-  dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+  dds_qset_durability(qos.get(), latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
   if (const std::string_view hash = type_hash(ros_type); !hash.empty()) {
     const std::string data = "typehash=" + std::string(hash) + ";";
@@ -186,11 +186,11 @@ std::string dds_type_name(std::string_view ros_type) {
 
 // ---- writing ----
 
-BytesWriter::BytesWriter(const Participant& participant, const std::string& topic,
-                         std::string_view ros_type) {
+BytesWriter::BytesWriter(const Participant& participant, const std::string& topic, std::string_view ros_type,
+                         bool latched) {
   Topic made = make_topic(participant, topic, ros_type);
   writer_ = Entity(dds_create_writer(participant.handle(), made.entity.handle(),
-                                     make_qos(ros_type, true, 5).get(), nullptr),
+                                     make_qos(ros_type, true, 5, latched).get(), nullptr),
                    topic);
   topic_ = std::move(made.entity);
   type_ = made.type;
@@ -217,7 +217,7 @@ BytesReader::BytesReader(const Participant& participant, const std::string& topi
                          ReaderQos qos) {
   Topic made = make_topic(participant, topic, ros_type);
   reader_ = Entity(dds_create_reader(participant.handle(), made.entity.handle(),
-                                     make_qos(ros_type, qos.reliable, qos.depth).get(), nullptr),
+                                     make_qos(ros_type, qos.reliable, qos.depth, qos.latched).get(), nullptr),
                    topic);
   topic_ = std::move(made.entity);
 }

@@ -71,8 +71,9 @@ std::string_view type_hash(std::string_view ros_type);
 /// RELIABLE, VOLATILE, KEEP_LAST 5: compatible with readers of any reliability.
 class BytesWriter {
  public:
-  /// `topic` as in ROS: "/cairn/objects". Throws Error.
-  BytesWriter(const Participant& participant, const std::string& topic, std::string_view ros_type);
+  /// `topic` as in ROS: "/cairn/objects"; latched: later readers receive the last ones, too. Throws Error.
+  BytesWriter(const Participant& participant, const std::string& topic, std::string_view ros_type,
+              bool latched = false);
   /// Whether there is a subscriber, in this process or another.
   [[nodiscard]] bool has_reader() const;
   /// False if readers were too slow to accept it for 0.1 s.
@@ -87,10 +88,11 @@ class BytesWriter {
 };
 
 /// BEST_EFFORT, VOLATILE, KEEP_LAST 2: compatible with writers of any reliability. Or RELIABLE with a longer
-/// history.
+/// history; latched: TRANSIENT_LOCAL, with what was sent before it, such as /tf_static.
 struct ReaderQos {
   bool reliable = false;
   int depth = 2;
+  bool latched = false;
 };
 class BytesReader {
  public:
@@ -124,8 +126,8 @@ class ReaderWait {
 template <Message M>
 class Writer : public BytesWriter {
  public:
-  Writer(const Participant& participant, const std::string& topic)
-      : BytesWriter(participant, topic, M::kType) {}
+  Writer(const Participant& participant, const std::string& topic, bool latched = false)
+      : BytesWriter(participant, topic, M::kType, latched) {}
   bool write(const M& message) { return BytesWriter::write(encode(message)); }
 };
 

@@ -265,7 +265,7 @@ TEST_F(McapSequence, ListsTheTopicsIfAmbiguous) {
     }
   }
   EXPECT_EQ(refusal(), file().string() +
-                           ": has more than one stereo pair, expected --topics with one of them: "
+                           ": has more than one pair, expected --topics with one of them: "
                            "/a/left/image_rect,/a/right/image_rect; /b/left/image_rect,/b/right/image_rect");
   SourceOptions options;
   options.topics = "/b/left/image_rect,/b/right/image_rect";

@@ -4,18 +4,22 @@
 #include <gtest/gtest.h>
 #include <ros.h>
 
+#include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/input/dds/ros2_sensors.hpp>
 #include <cairn/input/dds/ros2_sequence.hpp>
 #include <cairn/input/ros_pictures.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/image_files.hpp>
 #include <cairn/live/dds/ros2_sink.hpp>
+#include <cairn/live/topics.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/ros/dds/participant.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "support/dds_domain.hpp"
+#include "support/sensor_messages.hpp"
 #include "support/type_hash.hpp"
 
 /// ROS 2 topics: our serialisation equals Cyclone's, published messages equal the results, and pairs arrive
@@ -98,6 +102,10 @@ TEST_F(Dds, TypeHashesFollowFromTheMembers) {
   expect_known_hash<Detection3DArray>();
   expect_known_hash<OccupancyGrid>();
   expect_known_hash<TFMessage>();
+  expect_known_hash<LaserScan>();
+  expect_known_hash<Imu>();
+  expect_known_hash<Odometry>();
+  expect_known_hash<DiagnosticArray>();
   // As published by ROS 2's interface packages.
   EXPECT_EQ(type_hash("std_msgs/msg/String"),
             "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
@@ -207,6 +215,16 @@ TEST_F(Dds, BytesEqualThoseOfCyclone) {
   ASSERT_TRUE(floor);
   expect_the_bytes_of_cyclone<tf2_msgs_msg_dds__TFMessage_>(TFMessage{{*floor, *floor}},
                                                             tf2_msgs_msg_dds__TFMessage__desc);
+  expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__LaserScan_>(sensor_messages::scans(2)[1],
+                                                               sensor_msgs_msg_dds__LaserScan__desc);
+  expect_the_bytes_of_cyclone<sensor_msgs_msg_dds__Imu_>(sensor_messages::imu(3)[2],
+                                                         sensor_msgs_msg_dds__Imu__desc);
+  expect_the_bytes_of_cyclone<nav_msgs_msg_dds__Odometry_>(sensor_messages::odometry(3)[2],
+                                                           nav_msgs_msg_dds__Odometry__desc);
+  const DiagnosticStatus status{
+      DiagnosticStatus::kWarn, "cairn: perception", "dark", "", {{"a", "1"}, {"bc", ""}}};
+  expect_the_bytes_of_cyclone<diagnostic_msgs_msg_dds__DiagnosticArray_>(
+      DiagnosticArray{header, {status, status}}, diagnostic_msgs_msg_dds__DiagnosticArray__desc);
 }
 
 TEST_F(Dds, WritersAnnounceTheirTypeHash) {
@@ -531,6 +549,186 @@ TEST_F(Dds, ASourceDeliversPairsUnchanged) {
   }
   EXPECT_TRUE(source->status().is_live);
   EXPECT_TRUE(source->status().is_connected);
+}
+
+// ---- depth and other sensors ----
+
+/// Publishes an image with its depth, or with its disparities, at 20 Hz.
+class DepthCamera {
+ public:
+  DepthCamera(const std::string& prefix, bool is_disparity)
+      : image_(participant_, prefix + "/color/image_raw"),
+        info_(participant_, prefix + "/color/camera_info") {
+    if (is_disparity) {
+      disparity_.emplace(participant_, prefix + "/disparity");
+    } else {
+      depth_.emplace(participant_, prefix + "/depth/image");
+    }
+    thread_ = std::thread([this] { work(); });
+  }
+  ~DepthCamera() {
+    is_over_ = true;
+    thread_.join();
+  }
+
+ private:
+  void work() {
+    const input::SequenceFrame& pair = *live_frame()->pair;
+    const View<const float> disparity_px = live_frame()->step.frame.disparity.disparity_px;
+    const StereoRig camera = rig();
+    cairn::Image<float> depth_m(disparity_px.size());
+    for (int y = 0; y < depth_m.height(); ++y) {
+      for (int x = 0; x < depth_m.width(); ++x) {
+        const auto point = camera.point_in_camera_m(0, 0, disparity_px(x, y));
+        depth_m(x, y) = point ? point->z : std::nanf("");
+      }
+    }
+    for (std::int64_t i = 1; !is_over_; ++i) {
+      const Header header = header_of({i * 50'000'000}, "color_optical");
+      info_.write(camera_info_of(header, camera, pair.right.size(), Side::left));
+      if (depth_) depth_->write(image_of(header, depth_m.view()));
+      if (disparity_) {
+        disparity_->write(disparity_image_of(header, live_frame()->step.frame, camera,
+                                             live_frame()->config->segmentation.match, -1.0F));
+      }
+      image_.write(image_of(header, pair.left.gray.view()));
+      std::this_thread::sleep_for(50ms);
+    }
+  }
+
+  Participant participant_;
+  Writer<Image> image_;
+  Writer<CameraInfo> info_;
+  std::optional<Writer<Image>> depth_;
+  std::optional<Writer<DisparityImage>> disparity_;
+  std::atomic<bool> is_over_ = false;
+  std::thread thread_;
+};
+
+TEST_F(Dds, ADepthImageOrDisparitiesTakeThePlaceOfTheRightImage) {
+  for (const bool is_disparity : {false, true}) {
+    const std::string prefix = own_topic(is_disparity ? "with_disparity" : "with_depth");
+    const DepthCamera camera(prefix, is_disparity);
+    input::SourceOptions options;
+    options.topics = is_disparity ? "color/image_raw,disparity" : prefix + "/color/image_raw,depth/image";
+    const auto source = input::ros2_sequence("ros2:" + prefix, options, {});
+    ASSERT_TRUE(source->rig());
+    EXPECT_NEAR(source->rig()->baseline_m, is_disparity ? rig().baseline_m : io::kDepthBaseline_m, 1e-6);
+    const auto frame = source->next();
+    ASSERT_TRUE(frame);
+    EXPECT_TRUE(frame->right.empty());
+    EXPECT_EQ(source->frame_id(), "color_optical");
+    const View<const float> sent = live_frame()->step.frame.disparity.disparity_px;
+    ASSERT_EQ(frame->disparity_px.size(), sent.size());
+    int known = 0;
+    for (int y = 0; y < sent.height(); ++y) {
+      for (int x = 0; x < sent.width(); ++x) {
+        const auto expected = rig().point_in_camera_m(0, 0, sent(x, y));
+        const float d = frame->disparity_px(x, y);
+        const auto found = std::isnan(d) ? std::nullopt : source->rig()->point_in_camera_m(0, 0, d);
+        ASSERT_EQ(found.has_value(), expected.has_value()) << x << " " << y << " " << sent(x, y);
+        if (!found) continue;
+        ++known;
+        ASSERT_NEAR(found->z, expected->z, 1e-3F * expected->z);
+      }
+    }
+    EXPECT_GT(known, 10'000);
+  }
+}
+
+TEST_F(Dds, OtherSensorsEqualTheirRecordedMessages) {
+  const Participant participant;
+  const std::string prefix = own_topic("sensors");
+  Writer<Odometry> odometry(participant, prefix + "/odom");
+  Writer<LaserScan> scan(participant, prefix + "/scan");
+  Writer<TFMessage> transforms(participant, "/tf_static", true);
+  const TFMessage mounting = sensor_messages::transform("base_link", "optical", {0.3, 0, 0.8},
+                                                        sensor_messages::kOpticalFromRobot_rad);
+  transforms.write(mounting);  // before anyone listens
+  const auto sensors =
+      input::ros2_sensors({.odometry = prefix + "/odom", .imu = {}, .scan = prefix + "/scan"}, "optical");
+  ASSERT_TRUE(comes_true([&] { return odometry.has_reader() && scan.has_reader(); }));
+  input::SensorTopics expected("optical");
+  expected.add(mounting);
+  for (const Odometry& message : sensor_messages::odometry(20)) {
+    odometry.write(message);
+    expected.add(message);
+  }
+  for (LaserScan message : sensor_messages::scans(10)) {
+    message.header.stamp.sec += 1;
+    scan.write(message);
+    expected.add(message);
+  }
+  const Stamp before{1'060'000'000};
+  const Stamp now{1'240'000'000};
+  std::optional<MotionPrior> prior;
+  ASSERT_TRUE(comes_true([&] {
+    prior = sensors->between(before, now, {});
+    return prior && sensors->assumptions().size() == 1;  // of the laser, which has no transform
+  }));
+  const auto recorded = expected.priors()->between(before, now);
+  ASSERT_TRUE(recorded);
+  EXPECT_EQ(prior->now_from_before.rotation, recorded->now_from_before.rotation);
+  EXPECT_EQ(prior->now_from_before.translation_m, recorded->now_from_before.translation_m);
+  EXPECT_EQ(prior->covariance, recorded->covariance);
+  std::optional<cairn::LaserScan> seen;
+  ASSERT_TRUE(comes_true([&] { return (seen = sensors->scan_at({1'310'000'000})).has_value(); }));
+  EXPECT_EQ(seen->stamp.ns, 1'300'000'000);
+  EXPECT_FALSE(sensors->scan_at({9'000'000'000})) << "silent for longer than a second: nobody waits";
+}
+
+TEST_F(Dds, DiagnosticsSayWhatIsWrong) {
+  const auto said_of = [](const live::LiveFrame& frame) {
+    const auto all = live::topics();
+    const auto topic =
+        std::ranges::find_if(all, [](const live::Topic& each) { return each.name == "/diagnostics"; });
+    const auto message = live::message_of(*topic, frame, {.rig = rig()});
+    return decode<DiagnosticArray>(*message).status.at(0);
+  };
+  const auto copy = [] { return made_frame("optical"); };
+  const auto sound = said_of(*copy());
+  EXPECT_EQ(sound.level, DiagnosticStatus::kOk);
+  EXPECT_EQ(sound.message, "ok");
+  EXPECT_EQ(sound.hardware_id, "optical");
+  const auto changed = std::const_pointer_cast<live::LiveFrame>(copy());
+  changed->step.reliability.is_unreliable = true;
+  changed->step.reliability.value = 0.25F;
+  changed->step.reliability.weakest = "scan";
+  const auto weak = said_of(*changed);
+  EXPECT_EQ(weak.level, DiagnosticStatus::kWarn);
+  EXPECT_EQ(weak.message, "unreliable, weakest: scan");
+  EXPECT_EQ(weak.values.at(0).value, "0.25");
+  const auto faulty = std::const_pointer_cast<live::LiveFrame>(copy());
+  faulty->step.reliability.is_unreliable = true;
+  faulty->findings = {{FindingKind::swapped, Severity::broken, 60, "60 % are negative"}};
+  const auto broken = said_of(*faulty);
+  EXPECT_EQ(broken.level, DiagnosticStatus::kError);
+  EXPECT_EQ(broken.message, "cameras swapped");
+  EXPECT_EQ(broken.values.back().value, "60 % are negative");
+  const auto lost = std::const_pointer_cast<live::LiveFrame>(copy());
+  lost->step.is_lost = true;
+  EXPECT_EQ(said_of(*lost).message, "ok") << "single frames have no place";
+  const auto tracked = std::const_pointer_cast<live::LiveFrame>(copy());
+  tracked->step.is_lost = true;
+  tracked->step.ids = cairn::Image<TrackId>({4, 4});
+  EXPECT_EQ(said_of(*tracked).message, "place of the camera unknown");
+}
+
+TEST_F(Dds, DiagnosticsSayThatNoFrameArrives) {
+  const Participant participant;
+  Reader<DiagnosticArray> reader(participant, "/diagnostics", {.reliable = true, .depth = 100});
+  const auto sink = live::ros2_sink({own_topic("silent_run"), "", false}, rig());
+  ASSERT_TRUE(comes_true([&] { return reader.has_writer(); }));
+  std::vector<DiagnosticStatus> heard;
+  ASSERT_TRUE(comes_true([&] {
+    if (heard.empty()) sink->offer(live_frame());
+    while (const auto message = reader.take()) heard.push_back(message->status.at(0));
+    return heard.size() > 1;
+  }));
+  EXPECT_EQ(heard[0].level, DiagnosticStatus::kOk);
+  EXPECT_EQ(heard.back().level, DiagnosticStatus::kError);
+  EXPECT_NE(heard.back().message.find("no frame for 1"), std::string::npos) << heard.back().message;
+  sink->finish();
 }
 
 TEST_F(Dds, ASourceEndsSoonWhenItIsStopped) {

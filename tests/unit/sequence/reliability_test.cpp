@@ -108,8 +108,7 @@ struct OneObject {
   [[nodiscard]] Reliability judged(const Reliability& before = {}, const LaserScan* scan = nullptr,
                                    bool looks_for_floor = false) const {
     const Image<Gray> none(kSize, Gray{0}, {});
-    return assess_reliability(step, warped, {StereoPair::from(none, none), {}, kRig, looks_for_floor, scan},
-                              before);
+    return assess_reliability(step, warped, {none, none, {}, kRig, looks_for_floor, scan}, before);
   }
 };
 
