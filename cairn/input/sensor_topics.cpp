@@ -262,6 +262,7 @@ SensorTopics read_sensor_topics(const std::filesystem::path& recording, const Se
       read(channel.topic, std::type_identity<ros::TFMessage>{});
   }
   std::vector<std::uint16_t> wanted;
+  wanted.reserve(adds.size());
   for (const auto& [id, add] : adds) wanted.push_back(id);
   reader.only(wanted);
   while (const auto message = reader.next()) {

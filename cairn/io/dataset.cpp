@@ -428,9 +428,10 @@ void give_maps(std::vector<FrameFiles>& frames, const MapOptions& options) {
   const std::optional<double> units = options.depth_units_per_m;
   if (!options.disparity.empty() && !options.depth.empty())
     throw Error("--depth-image: found --disparity as well, expected one of the two");
-  if (units && !(*units >= 1 && *units <= 1e6))
+  if (units && !(*units >= 1 && *units <= 1e6)) {
     throw Error("--depth-units: found " + written(*units) +
                 ", expected units per metre, 1 ... 1e6 (1000: mm)");
+  }
   if (!options.disparity.empty()) give_maps_in(options.disparity, "--disparity", frames, std::nullopt);
   if (!options.depth.empty()) give_maps_in(options.depth, "--depth-image", frames, kDepthUnitsPerMetre);
   if (!units) return;
