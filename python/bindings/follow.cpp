@@ -168,14 +168,14 @@ class PyFollower {
     TrackedFrame step = follower_.next(pair, Stamp{ns}, prior, pose);
     return {std::move(step), provenance(settings_, used, calibration_.rig(), Stamp{ns}, false)};
   }
-  std::tuple<TrackedFrame, output::Provenance> next_given(const LoadedImage& left, const DisparityMap& map,
-                                                          std::int64_t ns,
+  std::tuple<TrackedFrame, output::Provenance> next_given(const LoadedImage& left,
+                                                          View<const float> disparity_px, std::int64_t ns,
                                                           const std::optional<MotionPrior>& prior,
                                                           const std::optional<Pose>& pose) {
     calibration_.check(left.gray().size());
     const std::lock_guard<std::mutex> one_at_a_time(busy_);
     const Config used = follower_.config().segmentation;
-    TrackedFrame step = follower_.next({left.gray(), left.rgb()}, map.disparity_px, Stamp{ns}, prior, pose);
+    TrackedFrame step = follower_.next({left.gray(), left.rgb()}, disparity_px, Stamp{ns}, prior, pose);
     return {std::move(step), provenance(settings_, used, calibration_.rig(), Stamp{ns}, true)};
   }
   void prefetch(const LoadedImage& left, const LoadedImage& right) {

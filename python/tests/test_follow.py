@@ -231,9 +231,13 @@ def test_given_disparities_are_followed_as_from_a_folder_of_maps(pairs, rig, tmp
         assert given.reliability["stereo"] is None
         assert given.frame.confidence is None
     assert any(step.tracks for step in whole)
+    blind = follower.next(pairs[0][0], disparity_map=np.full(given.ids.shape, np.nan, np.float32), seconds=50.0)
+    assert not blind.frame.objects
+    with pytest.raises(cairn.Error, match="found disparity 5000.000000 px at x 0, y 0"):
+        follower.next(pairs[0][0], disparity_map=np.full(given.ids.shape, 5000, np.float32), seconds=60.0)
     with pytest.raises(cairn.Error, match="right, disparity_map: found both or neither"):
         follower.next(pairs[0][0], seconds=100.0)
-    with pytest.raises(cairn.Error, match="disparity map is 4x4"):
+    with pytest.raises(cairn.Error, match="disparity_map: is 4x4, expected 320x240"):
         follower.next(pairs[0][0], disparity_map=np.ones((4, 4), np.float32), seconds=100.0)
     with pytest.raises(cairn.Error, match="--depth-image: found --disparity as well"):
         cairn.follow(SEQUENCE, disparity=maps, depth_image=maps)
