@@ -15,6 +15,7 @@
 #include <cairn/input/mcap_sequence.hpp>
 #include <cairn/input/open_parts.hpp>
 #include <cairn/io/names_and_numbers.hpp>
+#include <cairn/io/raster.hpp>
 #include <cairn/ros/mcap.hpp>
 
 namespace cairn::input {
@@ -85,11 +86,8 @@ class FileSequence : public SourceSequence {
 
   SequenceFrame load(const ListedFrame& files) {
     if (each_has_own_) check_calibration(files);
-    // An image without a right one has its own scale, like a pair.
-    io::LoadedPair pair =
-        io::load_pair(files.left, files.right.empty() ? files.left : files.right, files.layout, pool_, bits_);
+    io::LoadedPair pair = images_of(files);
     bits_ = pair.bits;
-    if (files.right.empty()) pair.right = {};
     // Raw images are compared by their own size.
     if (watch_.image_size().area() > 0 && pair.left.gray.size() != raw_size_) {
       throw Error(files.left.string() + ": is " + text(pair.left.gray.size()) + ", expected " +
@@ -109,6 +107,15 @@ class FileSequence : public SourceSequence {
     }
     watch_.see(frame, files.left.string(), remarks_);
     return frame;
+  }
+
+  /// An image without a right one is scaled like a pair.
+  io::LoadedPair images_of(const ListedFrame& files) const {
+    if (!files.right.empty()) return io::load_pair(files.left, files.right, files.layout, pool_, bits_);
+    const io::Raster raster = io::read_raster(files.left, io::Palette::colours);
+    io::LoadedPair pair = io::pair_of(raster, raster, pool_, bits_);
+    pair.right = {};
+    return pair;
   }
 
   void check_calibration(const ListedFrame& files) {
