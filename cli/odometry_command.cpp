@@ -83,12 +83,12 @@ bool add(Run& run, const TrackedFrame& step, bool keep_lost) {
 class CameraMotion {
  public:
   CameraMotion(const StereoRig& rig, const input::MotionPriors* priors, Run& run)
-      : rig_(rig), rig_of_frames_(rig), priors_(priors), run_(run) {}
+      : rig_(rig), priors_(priors), run_(run) {}
 
   TrackedFrame next(const input::SequenceFrame& frame, const FollowConfig& config, const Exec& exec) {
     FrameInput in{{frame.left.gray, frame.left.rgb}, frame.right};
     if (!frame.disparity_px.empty()) in = {in.left, {}, with_holes_marked(frame.disparity_px, exec)};
-    StereoResult scene = estimate_disparity(std::move(in), {rig_of_frames_, config.segmentation, exec});
+    StereoResult scene = estimate_disparity(std::move(in), {rig_, config.segmentation, exec});
     const auto start = live::Clock::now();
     if (before_ && clock_step(*before_, frame.stamp) == ClockStep::set_back) before_.reset();
     if (!before_) {
@@ -101,7 +101,7 @@ class CameraMotion {
     if (prior) ++run_.with_prior;
     if (before_ && frame.after_gap) state_ = after_gap(std::move(state_));
     OdometryStep moved = advance_odometry(state_, {frame.left.gray, scene.disparity, scene.confidence, {}},
-                                          rig_, prior, config.odometry);
+                                          *rig_, prior, config.odometry);
     run_.milliseconds.push_back(live::ms_between(start, live::Clock::now()));
     state_ = std::move(moved.state);
     before_ = frame.stamp;
@@ -115,8 +115,7 @@ class CameraMotion {
   }
 
  private:
-  StereoRig rig_;
-  std::optional<StereoRig> rig_of_frames_;
+  std::optional<StereoRig> rig_;  // always known
   const input::MotionPriors* priors_;
   Run& run_;
   OdometryState state_;

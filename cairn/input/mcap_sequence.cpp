@@ -8,6 +8,7 @@
 #include <cairn/io/frame_names.hpp>
 #include <cairn/io/raster.hpp>
 #include <deque>
+#include <iterator>
 #include <type_traits>
 
 #include <cairn/input/frame_list.hpp>
@@ -122,7 +123,7 @@ class McapSequence : public SourceSequence {
 
   /// Of topics that were named: whether the second one is a depth image of the first.
   bool has_depth_by_encoding(const StereoTopics& topics) {
-    if (topics.right.type != ros::Image::kType) return false;
+    if (options_.topics.empty() || topics.right.type != ros::Image::kType) return false;
     const auto encoding_of = [this](const ros::McapChannel& channel) {
       const auto image = channel.type == ros::Image::kType ? first_of<ros::Image>(channel.id) : std::nullopt;
       return image ? image->encoding : std::string();
@@ -147,6 +148,7 @@ class McapSequence : public SourceSequence {
     const auto left = first_of<ros::CameraInfo>(topics.left_info);
     if (has_depth_) {
       if (left) calibrate(*left);
+      image_info_ = left;
       return;
     }
     const auto right = first_of<ros::CameraInfo>(topics.right_info);
@@ -180,9 +182,7 @@ class McapSequence : public SourceSequence {
   void calibrate(const ros::CameraInfo& info) {
     calibration_.path = file_ / "camera_info";
     try {
-      const bool is_raw = sides_[0].channel.topic.find("raw") != std::string::npos;
-      calibration_.says.one_camera = ros::one_camera_of(info, is_raw);
-      is_distorted_ = is_raw && std::ranges::any_of(info.d, [](double d) { return d != 0; });
+      set_camera(calibration_.says, info, sides_[0].channel.topic);
       if (const Size size = ros::image_size_of(info); size.area() > 0) calibration_.says.image_size = size;
     } catch (const Error& error) {
       throw Error(file_.string() + ": " + error.what());
@@ -347,7 +347,13 @@ class McapSequence : public SourceSequence {
       }
       if (watch_.image_size().area() == 0) {
         calibration_.suit(frame.left.gray.size());
-        if (right.depth) begin_depth(left, right);
+        if (right.depth) {
+          complete(calibration_.says, *right.depth);
+          std::ranges::move(
+              remarks_on({sides_[0].channel.topic, left.frame_id, sides_[1].channel.topic, right.frame_id},
+                         image_info_ ? &*image_info_ : nullptr),
+              std::back_inserter(remarks_));
+        }
       }
       if (right.depth) {
         try {
@@ -363,20 +369,6 @@ class McapSequence : public SourceSequence {
     }
     end();
     return std::nullopt;
-  }
-  /// Of the first image with depth: completes the calibration, and names what depth cameras get wrong.
-  void begin_depth(const WaitingImage& image, const WaitingImage& depth) {
-    complete(calibration_.says, *depth.depth);
-    if (image.frame_id != depth.frame_id && !depth.frame_id.empty()) {
-      remark(remarks_, {"depth in the frame " + depth.frame_id + ", its image in " + image.frame_id +
-                            ": is it aligned to the image?",
-                        0, sides_[1].channel.topic, false, false});
-    }
-    if (is_distorted_) {
-      remark(remarks_,
-             {"image with distortion, expected a rectified one: positions away from its centre are off", 0,
-              sides_[0].channel.topic, false, false});
-    }
   }
   std::optional<io::Raster> grey_at(Stamp stamp, Size size) {
     while (!greys_.empty() && greys_.front().first < stamp) greys_.pop_front();
@@ -408,7 +400,7 @@ class McapSequence : public SourceSequence {
   std::array<std::optional<Stamp>, 2> first_stamps_;
   std::optional<std::uint16_t> grey_;
   bool has_depth_ = false;
-  bool is_distorted_ = false;  // the image with depth
+  std::optional<ros::CameraInfo> image_info_;  // of an image with depth
   std::deque<std::pair<Stamp, io::Raster>> greys_;
   std::size_t pairs_ = 0;
   int bits_ = 8;

@@ -15,6 +15,8 @@
 #include <string_view>
 #include <utility>
 
+#include <cairn/ros/from_step.hpp>
+
 namespace cairn::input {
 namespace {
 
@@ -52,6 +54,10 @@ Image<float> values_of(const ros::Image& image, const ValueOf& value_of, const P
     }
   }
   return values;
+}
+
+bool is_raw(const std::string& topic) {
+  return topic.find("raw") != std::string::npos;
 }
 
 float finite(float value) {
@@ -117,6 +123,27 @@ RosDepth depth_of(const ros::DisparityImage& image, const Pool& pool) {
   }
   const auto seen = [&](float d) { return std::isfinite(d) && d >= image.min_disparity ? d : kHole; };
   return {values_of<float>(image.image, seen, pool), RosDepth::FocalAndBaseline{image.f, std::abs(image.t)}};
+}
+
+void set_camera(io::Calibration& calibration, const ros::CameraInfo& info, const std::string& topic,
+                std::optional<Size> images) {
+  calibration.one_camera = ros::one_camera_of(info, is_raw(topic), images);
+}
+
+std::vector<SourceRemark> remarks_on(const DepthNames& names, const ros::CameraInfo* info) {
+  std::vector<SourceRemark> remarks;
+  if (names.image_frame != names.depth_frame && !names.depth_frame.empty()) {
+    remarks.push_back({"depth in the frame " + names.depth_frame + ", its image in " + names.image_frame +
+                           ": is it aligned to the image?",
+                       0, names.depth_topic, false, false});
+  }
+  if (info != nullptr && is_raw(names.image_topic) &&
+      std::ranges::any_of(info->d, [](double d) { return d != 0; })) {
+    remarks.push_back(
+        {"image with distortion, expected a rectified one: positions away from its centre are off", 0,
+         names.image_topic, false, false});
+  }
+  return remarks;
 }
 
 void complete(io::Calibration& calibration, const RosDepth& first) {

@@ -4,7 +4,10 @@
 
 #include <cairn/core/stereo_pair.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include <cairn/input/sequence.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/ros/messages.hpp>
 
@@ -34,6 +37,21 @@ RosDepth depth_of(const ros::Image& image, const Pool& pool);
 RosDepth depth_of(const ros::CompressedImage& image, const Pool& pool);
 /// Disparities, counted from the principal points. Values below min_disparity are holes.
 RosDepth depth_of(const ros::DisparityImage& image, const Pool& pool);
+
+/// The camera of an image with depth, by its camera_info: of a raw image, if its topic says so, K instead of P. Throws
+/// Error if the message is of images of another size.
+void set_camera(io::Calibration& calibration, const ros::CameraInfo& info, const std::string& topic,
+                std::optional<Size> images = std::nullopt);
+/// The topics of an image and its depth, and the frame_id of their headers.
+struct DepthNames {
+  std::string image_topic;
+  std::string image_frame;
+  std::string depth_topic;
+  std::string depth_frame;
+};
+/// What is often wrong with depth cameras: an image with distortion; depth in another frame than its image, so perhaps
+/// not aligned to it. `info`: of the image, nullptr if unknown.
+std::vector<SourceRemark> remarks_on(const DepthNames& names, const ros::CameraInfo* info);
 
 /// Completes the calibration for these messages: what a DisparityImage says of its cameras; or an assumed baseline for
 /// depths. No change without a focal length and centre.

@@ -185,6 +185,16 @@ std::vector<LaserScan> SensorTopics::scans() const {
   return all;
 }
 
+std::optional<LaserScan> SensorTopics::scan_at(Stamp moment) const {
+  std::vector<LaserScan> stamps;
+  for (const ros::LaserScan& scan : scans_)
+    stamps.push_back({ros::stamp_of(scan.header.stamp), 0, 0, {}, {}});
+  const LaserScan* const nearest = input::scan_at(stamps, moment);
+  if (nearest == nullptr) return std::nullopt;
+  const ros::LaserScan& scan = scans_[static_cast<std::size_t>(nearest - stamps.data())];
+  return scan_of(scan, camera_from(scan.header.frame_id));
+}
+
 void SensorTopics::check(const SensorTopicNames& names) const {
   if (!names.odometry.empty()) check_rows(pose_rows(), names.odometry);
   if (!names.imu.empty()) check_rows(rates_, names.imu);

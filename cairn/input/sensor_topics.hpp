@@ -72,6 +72,8 @@ class SensorTopics {
   /// Null with fewer than two messages.
   [[nodiscard]] std::unique_ptr<MotionPriors> priors() const;
   [[nodiscard]] std::vector<LaserScan> scans() const;
+  /// Like input::scan_at() of these; converts only that one.
+  [[nodiscard]] std::optional<LaserScan> scan_at(Stamp moment) const;
   /// Throws Error like load_odometry() and load_imu() for numbers in other units, and without messages. The names are
   /// for messages; empty ones are not checked.
   void check(const SensorTopicNames& names) const;

@@ -51,7 +51,7 @@ std::optional<StereoRig> rig_of_depth(const Calibration& calibration);
 /// The assumed baseline. Objects are found equally well from 0.1 to 0.25 m. (docs/bring_your_own_depth.md)
 inline constexpr float kDepthBaseline_m = 0.15F;
 
-/// The same for the content of a file, named `name` in messages.
+/// load_calibration() for the content of a file, named `name` in messages.
 Calibration parse_calibration(std::string_view text, const std::filesystem::path& name,
                               bool grey_cameras = false);
 

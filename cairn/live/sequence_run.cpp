@@ -102,15 +102,17 @@ SequenceRun::SequenceRun(const input::Sequence& source, std::string source_name,
                 ": its stamps count from the start of the computer, those of ROS topics from 1970: expected "
                 "images from ros2:, too");
   }
-  if (topics.any() && is_live) live_ = input::open_sensor_topics(topics, source.frame_id());
-  const bool has_live_motion = is_live && !(topics.odometry.empty() && topics.imu.empty());
-  if (!has_live_motion) priors_ = open_priors(files.odometry, files.imu, source_name_, source, &assumptions_);
-  if (files.scan && topics.scan.empty()) scans_ = input::load_scans(*files.scan);
-  if (!topics.scan.empty() && !is_live) {
-    const input::SensorTopics lasers = recorded({{}, {}, topics.scan}, source_name_, source);
-    scans_ = lasers.scans();
-    std::ranges::copy(lasers.assumptions(), std::back_inserter(assumptions_));
+  if (topics.any() && is_live) {
+    live_ = input::open_sensor_topics(topics, source.frame_id());
+  } else if (topics.any()) {
+    const input::SensorTopics said = recorded(topics, source_name_, source);
+    priors_ = said.priors();
+    scans_ = said.scans();
+    assumptions_ = said.assumptions();
   }
+  if (topics.odometry.empty() && topics.imu.empty())
+    priors_ = open_priors(files.odometry, files.imu, source_name_, source);
+  if (files.scan && topics.scan.empty()) scans_ = input::load_scans(*files.scan);
   if (files.map) {
     map_.emplace(
         MapFile::open(*files.map, is_map_read_only_ ? MapMode::read_only : MapMode::update, source.rig()));

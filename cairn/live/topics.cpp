@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cairn/io/raster.hpp>
+#include <cairn/io/text_lines.hpp>
 #include <cairn/live/view/frame_json.hpp>
 #include <cairn/ros/from_step.hpp>
 #include <cmath>
-#include <cstdio>
 
 namespace cairn::live {
 namespace {
@@ -27,9 +27,7 @@ ros::Header header_of(const LiveFrame& frame, const MessageForm& form) {
 
 /// Three digits are enough for people.
 std::string short_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
+  return io::text_of("%.3g", value);
 }
 
 bool is_same(View<const Gray> a, View<const Gray> b) {

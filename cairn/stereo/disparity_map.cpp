@@ -35,6 +35,22 @@ bool has_values(View<const float> disparity_px) {
   return any;
 }
 
+DisparityMap marked(View<const float> disparity_px, const Exec& exec) {
+  const Size size = disparity_px.size();
+  DisparityMap map{Image<float>(size, exec.pool), Image<Reject>(size, exec.pool)};
+  parallel_for(exec, size.height, 64, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const float* const in = disparity_px.row(y);
+      for (int x = 0; x < size.width; ++x) {
+        const bool known = std::isfinite(in[x]);
+        map.disparity_px(x, y) = known ? in[x] : kHole;
+        map.reject(x, y) = known ? Reject::none : Reject::no_data;
+      }
+    }
+  });
+  return map;
+}
+
 }  // namespace
 
 DisparityMap combine(Image<float> refined_px, const std::vector<View<const Reject>>& verdicts,
@@ -61,27 +77,14 @@ DisparityMap combine(Image<float> refined_px, const std::vector<View<const Rejec
 DisparityMap external_disparity(View<const float> disparity_px, const Exec& exec) {
   if (disparity_px.empty())
     throw Error("external disparity: found an empty map, expected at least 1x1 pixels");
-  DisparityMap map = with_holes_marked(disparity_px, exec);
-  if (!has_values(map.disparity_px))
+  if (!has_values(disparity_px))
     throw Error("external disparity: found no value in " + text(disparity_px.size()) + " pixels");
-  return map;
+  return marked(disparity_px, exec);
 }
 
 DisparityMap with_holes_marked(View<const float> disparity_px, const Exec& exec) {
   (void)has_values(disparity_px);
-  const Size size = disparity_px.size();
-  DisparityMap map{Image<float>(size, exec.pool), Image<Reject>(size, exec.pool)};
-  parallel_for(exec, size.height, 64, [&](int first, int last) {
-    for (int y = first; y < last; ++y) {
-      const float* const in = disparity_px.row(y);
-      for (int x = 0; x < size.width; ++x) {
-        const bool known = std::isfinite(in[x]);
-        map.disparity_px(x, y) = known ? in[x] : kHole;
-        map.reject(x, y) = known ? Reject::none : Reject::no_data;
-      }
-    }
-  });
-  return map;
+  return marked(disparity_px, exec);
 }
 
 Image<float> disparity_of_depth(View<const float> depth_m, const StereoRig& rig, const Pool& pool) {

@@ -185,9 +185,10 @@ class Follower:
              prior: Optional[MotionPrior] = None, pose: Optional[MatrixLike] = None, bgr: bool = False) -> Step:
         """Processes the next frame and returns its Step. stamp_ns or seconds: time of capture, later than that of the
         previous frame. disparity_map: an external map instead of right, (H, W) float32 in px, NaN = hole, also
-        everywhere; of depths in m it is rig.focal_px * rig.baseline_m / depth - rig.doffs_px. prior: a MotionPrior since the previous frame. pose: 4 x 4 map_from_camera, if the robot knows
-        it; no motion is estimated then. Raises cairn.Error if the size differs from that of the first pair, or the
-        stamp is not later. One that is more than 1 s earlier begins a new run: the clock was set back."""
+        everywhere; of depths in m it is rig.focal_px * rig.baseline_m / depth - rig.doffs_px. prior: a MotionPrior since
+        the previous frame. pose: 4 x 4 map_from_camera, if the robot knows it; no motion is estimated then. Raises
+        cairn.Error if the size differs from that of the first pair, or the stamp is not later. One that is more than
+        1 s earlier begins a new run: the clock was set back."""
         stamp = stamp_from(stamp_ns, seconds)
         known = None if pose is None else pose_from(pose, "pose")
         if (right is None) == (disparity_map is None):

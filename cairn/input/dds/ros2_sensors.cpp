@@ -2,13 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/input/dds/ros2_sensors.hpp>
 
-#include <array>
 #include <cairn/core/error.hpp>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include <cairn/io/text_lines.hpp>
 #include <cairn/ros/dds/participant.hpp>
 
 namespace cairn::input {
@@ -53,15 +52,13 @@ class Ros2Sensors : public LiveSensors {
   std::optional<LaserScan> scan_at(Stamp moment) override {
     if (!scan_) return std::nullopt;
     asked_ = moment;
-    std::vector<LaserScan> scans;
-    const LaserScan* nearest = nullptr;
+    std::optional<LaserScan> nearest;
     const auto look = [&] {
-      scans = topics_.scans();
-      nearest = input::scan_at(scans, moment);
-      return nearest != nullptr || topics_.newest_scan() >= moment;
+      nearest = topics_.scan_at(moment);
+      return nearest || topics_.newest_scan() >= moment;
     };
     wait_until(look, [&] { return is_silent(topics_.newest_scan(), moment); });
-    return nearest == nullptr ? std::nullopt : std::optional(*nearest);
+    return nearest;
   }
 
   [[nodiscard]] std::vector<std::string> assumptions() const override {
@@ -71,9 +68,8 @@ class Ros2Sensors : public LiveSensors {
       if (!newest) {
         all.push_back(topic + ": received nothing in domain " + std::to_string(participant_.domain()));
       } else if (asked_ && std::abs(seconds_between(*newest, *asked_)) > kSilent_s) {
-        std::array<char, 64> apart{};
-        std::snprintf(apart.data(), apart.size(), "%.3g s", seconds_between(*asked_, *newest));
-        all.push_back(topic + ": its stamps are " + apart.data() + " from those of the images");
+        all.push_back(topic + ": its stamps are " + io::text_of("%.3g s", seconds_between(*asked_, *newest)) +
+                      " from those of the images");
       }
     };
     check(names_.odometry, topics_.newest_motion());

@@ -8,6 +8,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/io/frame_names.hpp>
 #include <cstdio>
+#include <iterator>
 #include <mutex>
 #include <variant>
 
@@ -259,9 +260,7 @@ class Ros2Sequence : public SourceSequence {
     } else if (last_infos_[0] && last_infos_[1]) {
       calibration_.says.rig = rig_of_infos(size);
     } else {
-      remarks_.push_back(
-          {"received nothing on " + info_topic(last_infos_[0] ? 1 : 0) + ": no metres (--calib FILE instead)",
-           0, "", false, false});
+      remark_without(last_infos_[0] ? 1 : 0);
     }
   }
   void calibrate_depth(const Pair& pair, Size size, bool needs_infos) {
@@ -269,33 +268,23 @@ class Ros2Sequence : public SourceSequence {
       calibration_.suit(size);
     } else if (last_infos_[0]) {
       try {
-        const bool is_raw = topics_[0].find("raw") != std::string::npos;
-        calibration_.says.one_camera = ros::one_camera_of(*last_infos_[0], is_raw, size);
-        const auto& d = last_infos_[0]->d;
-        if (is_raw && std::ranges::any_of(d, [](double each) { return each != 0; })) {
-          remarks_.push_back(
-              {"image with distortion, expected a rectified one: positions away from its "
-               "centre are off",
-               0, topics_[0], false, false});
-        }
+        set_camera(calibration_.says, *last_infos_[0], topics_[0], size);
       } catch (const Error& error) {
         throw Error(source_ + ": " + error.what());
       }
     } else {
-      remarks_.push_back({"received nothing on " + info_topic(0) + ": no metres (--calib FILE instead)", 0,
-                          "", false, false});
+      remark_without(0);
     }
     complete(calibration_.says, depth_of(pair));
-    const auto& depth_frame =
-        std::visit([](const auto& message) -> const ros::Header& { return message.header; },
-                   pair.right.value.message)
-            .frame_id;
-    const std::string& frame = pair.left.value.image().header.frame_id;
-    if (depth_frame != frame && !depth_frame.empty()) {
-      remarks_.push_back(
-          {"depth in the frame " + depth_frame + ", its image in " + frame + ": is it aligned to the image?",
-           0, topics_[1], false, false});
-    }
+    const auto header_of = [](const auto& message) -> const ros::Header& { return message.header; };
+    std::ranges::move(remarks_on({topics_[0], pair.left.value.image().header.frame_id, topics_[1],
+                                  std::visit(header_of, pair.right.value.message).frame_id},
+                                 last_infos_[0] ? &*last_infos_[0] : nullptr),
+                      std::back_inserter(remarks_));
+  }
+  void remark_without(std::size_t info) {
+    remarks_.push_back({"received nothing on " + info_topic(info) + ": no metres (--calib FILE instead)", 0,
+                        "", false, false});
   }
   [[nodiscard]] RosDepth depth_of(const Pair& pair) const {
     try {
