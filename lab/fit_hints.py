@@ -328,6 +328,55 @@ def network(width):
     return Network()
 
 
+def of_library(net, path, frames):
+    """Sets the weights to those of a file of the library, as if every activation had the scale of the input: the
+    function is the same. What batch normalisation would have seen is taken from frames."""
+    import torch
+
+    def tensor(values):
+        return torch.tensor(np.array(values, np.float32))
+
+    norms = []
+    for step, (shape, whole, bias, scale) in zip([*net.steps, net.end], fitted_files.read_network(path)):
+        inputs, outputs, side = shape[:3]
+        is_end = step is net.end
+        unit = scale.astype(np.float64)
+        if is_end:  # the kernels need a multiple of 8 outputs
+            outputs = 4 * len(STEPS_PER_UNIT)
+            unit = unit * UNIT / np.pad(np.repeat(np.array(STEPS_PER_UNIT, float), 4), (0, 4), constant_values=1)
+        weight = whole.reshape(side, side, inputs, -1).transpose(3, 2, 0, 1) * unit[:, None, None, None]
+        offset = bias * unit / UNIT
+        with torch.no_grad():
+            (step if is_end else step[0]).weight.copy_(tensor(weight[:outputs]))
+            if is_end:
+                step.bias.copy_(tensor(offset[:outputs]))
+            else:
+                norm = step[1]
+                norm.weight.fill_(1), norm.bias.copy_(tensor(offset)), norm.running_mean.zero_(), norm.running_var.fill_(1 - norm.eps)
+                norms.append(norm)
+    seen = {norm: [] for norm in norms}
+    hooks = [norm.register_forward_hook(lambda norm, given, _: seen[norm].append(torch.stack(
+        [given[0].mean((0, 2, 3)), (given[0] ** 2).mean((0, 2, 3))]))) for norm in norms]
+    net.eval()
+    with torch.no_grad():
+        for number in np.linspace(0, 2 * len(frames) - 1, CALIBRATION).astype(int):
+            net(frames.take(np.array([number]))[0].float() / UNIT)
+        for hook in hooks:
+            hook.remove()
+        for step in net.steps:
+            convolution, norm = step[0], step[1]
+            mean, square = torch.stack(seen[norm]).mean(0)
+            variance = (square - mean ** 2).clamp(min=1e-4)
+            norm.bias += mean
+            norm.weight.copy_((variance + norm.eps).sqrt())
+            # The length of a filter changes nothing but the size of its steps.
+            length = convolution.weight.flatten(1).norm(dim=1).clamp(min=1e-6)
+            convolution.weight /= length[:, None, None, None]
+            norm.running_mean.copy_(mean / length)
+            norm.running_var.copy_(variance / length ** 2)
+    net.train()
+
+
 def loss_of(output, truth, down, across):
     """The four parts of the loss: object, outline, centre, size."""
     import torch
@@ -358,7 +407,9 @@ def fitted(frames, steps, width, checkpoint, start=None):
     torch.set_num_threads(2)  # sums depend on it
     device = frames.device
     net, mean = (network(width).to(device, memory_format=torch.channels_last) for _ in range(2))
-    if start:
+    if start and start.suffix == ".bin":
+        of_library(net, start, frames)
+    elif start:
         net.load_state_dict(torch.load(start, map_location=device))
     mean.load_state_dict(net.state_dict())
     kept, new = ([v for v in one.state_dict().values() if v.dtype.is_floating_point] for one in (mean, net))
@@ -495,7 +546,7 @@ def main():
     command.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
     command.add_argument("--steps", type=int, default=22000)
     command.add_argument("--width", type=float, default=1.0, help="of all layers")
-    command.add_argument("--start", type=pathlib.Path, help="weights of an earlier fit (.pt) to go on from, at half the rate")
+    command.add_argument("--start", type=pathlib.Path, help="weights of an earlier fit (.pt) or of the library (hints.bin) to go on from, at half the rate")
     command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
     command.add_argument("--name", default="hints", help="of the file in the work folder")
     arguments = parser.parse_args()

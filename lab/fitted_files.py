@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Writes fitted numbers as the library reads them: cairn/fitted/fitted.hpp defines the format."""
+"""Reads and writes fitted numbers as the library has them: cairn/fitted/fitted.hpp defines the format."""
 import numpy as np
 
 
@@ -20,3 +20,20 @@ def write_trees(path, base, roots, nodes):
 
 def write_network(path, shapes, weights, bias, scale):
     write(path, b"net ", np.array(shapes, "<i4").ravel(), np.array(weights, "i1"), np.array(bias, "<i4"), np.array(scale, "<f4"))
+
+
+def read_network(path):
+    """The layers: (inputs, outputs, side, stride, least), weights, biases and scales of each."""
+    data, at, arrays = path.read_bytes(), 12, []
+    for kind in ("<i4", "i1", "<i4", "<f4"):
+        count = int.from_bytes(data[at:at + 4], "little")
+        arrays.append(np.frombuffer(data, kind, count, at + 4))
+        at += 4 + -(-arrays[-1].nbytes // 4) * 4
+    shapes, weights, bias, scale = arrays
+    layers = []
+    for shape in map(tuple, shapes.reshape(-1, 5).tolist()):
+        inputs, outputs, side = shape[:3]
+        count = inputs * outputs * side * side
+        layers.append((shape, weights[:count], bias[:outputs], scale[:outputs]))
+        weights, bias, scale = weights[count:], bias[outputs:], scale[outputs:]
+    return layers

@@ -269,7 +269,13 @@ Vec3 with_marks(const Look& look, Vec2 uv, Vec3 albedo) {
       float r = shape == 0 ? std::max(std::abs(u), std::abs(v)) : std::sqrt(u * u + v * v);
       if (shape == 1) r += 0.35F * noise({2 * u, 2 * v, 0}, more);
       const float inside = r >= 1 ? 0 : look.marks_edge == 0 ? 1 : std::min(1.0F, (1 - r) / look.marks_edge);
-      albedo = mix(albedo, look.mark_colours[h >> 31U], inside);
+      Vec3 colour = look.mark_colours[h >> 31U];
+      if (r < 1 && r > 1 - look.rim) {
+        // Turned by `angle`, the light comes from the same side for all marks of a look.
+        const float towards = (std::cos(angle) * u - std::sin(angle) * v) / std::max(r, 0.1F);
+        colour = (1 + look.rim_relief * towards) * look.rim_colour;
+      }
+      albedo = mix(albedo, colour, inside);
     }
   }
   return albedo;
@@ -449,6 +455,11 @@ void scatter_marks(Look& look, Dice& dice) {
     const Vec3 other = dice.chance(0.4) ? similar(dice, look.colours[0]) : random_colour(dice);
     colour = mix(look.colours[0], other, strength);
   }
+  if (!dice.chance(0.4)) return;
+  look.rim = draw(dice, 0.03, 0.25);
+  look.rim_relief = dice.chance(0.5) ? 0 : draw(dice, 0.1, 0.5);
+  look.rim_colour = draw(dice, 0.3, 0.95) * (dice.chance(0.6) ? look.colours[0] : look.mark_colours[0]);
+  look.marks_edge = 0;
 }
 
 float spots_at(Vec2 direction) {

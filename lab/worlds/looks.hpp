@@ -55,6 +55,10 @@ struct Look {
   float marks_period = 0.3F;  // metres
   float marks_edge = 0;       // how soft their edges are: 0 … 1 of their radius
   std::array<Vec3, 2> mark_colours{};
+  float rim = 0;  // width of the marks' rims: 0 … 1 of their radius
+  float rim_relief =
+      0;  // brightness of a rim on the side of its light, and less on the other: a lid, a drain
+  Vec3 rim_colour{};
   Vec2 turn{1, 0};  // cosine and sine of the pattern's direction
   Vec3 axis{0, 0, 1};
   std::uint32_t seed = 0;
@@ -66,7 +70,7 @@ struct Look {
 Look random_look(Dice& dice);
 Look floor_look(Dice& dice);
 Look wall_look(Dice& dice);
-/// Marks that are no objects: stickers, stains, spots of light or shadow, painted signs.
+/// Marks that are no objects: stickers, stains, spots of light or shadow, painted signs; with a rim: lids, drains.
 void scatter_marks(Look& look, Dice& dice);
 /// Outdoors: asphalt, paving, gravel, lawn.
 Look ground_look(Dice& dice);

@@ -170,6 +170,26 @@ def test_every_frame_comes_once_in_a_round(hints):
     assert (hints.Sampler.numbers(sampler, 1000) == hints.Sampler.numbers(sampler, 1000)).all()
 
 
+def test_a_fit_goes_on_from_the_networks_integers(hints, tmp_path):
+    torch = pytest.importorskip("torch")
+    store(hints, tmp_path, [(1, slice(30, 60))])
+    frames = hints.Frames([tmp_path], 10, torch.device("cpu"))
+    torch.manual_seed(3)
+    net = hints.network(1 / 3).eval()
+    for step in net.steps:
+        torch.nn.init.normal_(step[1].running_mean, 0, 0.3)
+        torch.nn.init.uniform_(step[1].weight, 0.5, 2)
+        torch.nn.init.normal_(step[1].bias, 0.2, 0.3)
+    hints.write_fitted(hints.rounded(net, frames), tmp_path / "hints.bin")
+    again = hints.network(1 / 3)
+    hints.of_library(again, tmp_path / "hints.bin", frames)
+    again.eval()
+    data = frames.take(np.array([0, 1]))[0].float() / hints.UNIT
+    with torch.no_grad():
+        expected, found = net(data), again(data)
+    assert (found - expected).abs().max() < 0.05 * expected.abs().max()  # but for the rounding
+
+
 def test_targets_of_the_network(hints, tmp_path):
     torch = pytest.importorskip("torch")
     store(hints, tmp_path, [(3, slice(60, 80)), (9, slice(80, 90))])
