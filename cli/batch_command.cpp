@@ -264,6 +264,7 @@ Work declare_batch(CLI::App& app) {
                "work: results of each frame in RUN/frames, as from cairn segment -o");
   app.add_flag("--partial", options->partial, "merge: output even if frames are missing");
   add_exec_options(app, options->exec);
+  add_device_option(app, options->exec);
   app.footer(
       "An unusable frame gets a row with `error`; the work does not fail.\n"
       "work may be killed and restarted at any time: the rows are the same.\n"

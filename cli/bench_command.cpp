@@ -11,6 +11,7 @@
 #include <cairn/io/disparity_files.hpp>
 #include <cairn/io/image_files.hpp>
 #include <cairn/output/json.hpp>
+#include <cairn/stereo/match_device.hpp>
 #include <cairn/timing/drawn_pair.hpp>
 #include <cairn/timing/frame_times.hpp>
 #include <cairn/timing/machine.hpp>
@@ -271,6 +272,21 @@ std::string summary(const Findings& found) {
          std::to_string(times.later_allocations) + " in later ones\n";
 }
 
+/// What the device did, in the mean of its pairs.
+std::string device_table(const Exec& exec) {
+  if (!exec.device) return {};
+  const DeviceReport report = exec.device->report();
+  std::string heading = "device " + report.name + ": " + std::to_string(report.on_device) + " pairs, " +
+                        text_of("%.1f MB", 1e-6 * static_cast<double>(report.memory_bytes));
+  if (!report.reason.empty())
+    heading += "; " + std::to_string(report.on_processor) + " on the processor: " + report.reason;
+  Table table({"kernel", "ms a pair"});
+  for (const auto& [kernel, sum] : report.kernels_ms)
+    table.add(
+        {kernel, text_of("%.3f", sum / static_cast<double>(std::max<std::int64_t>(1, report.on_device)))});
+  return "\n" + heading + "\n" + (report.on_device > 0 ? table.text() : "");
+}
+
 std::string peer_table(const Findings& found) {
   if (timing::quick_opencv_matchers().empty()) return "OpenCV's matchers are not built in.\n";
   const FrameTimes& times = found.times;
@@ -409,6 +425,7 @@ Json bench_json(const Findings& found) {
                  {"resident_bytes", found.times.resident_bytes},
                  {"first_frame_allocations", times.first_allocations},
                  {"later_allocations", times.later_allocations}};
+  if (found.exec.device) j["device"] = output::json_of(found.exec.device->report());
   j["opencv"] = opencv_json(found);
   j["accuracy"] = accuracy_json(found);
   return j;
@@ -439,8 +456,9 @@ int report_machine(BenchOptions options) {
   };
   constexpr std::array kRuns{Run{"320x240", "64"}, Run{"640x480", "64"}, Run{"1280x720", "128"}};
   constexpr timing::Limits kOfARun{.frames = 100, .seconds = 4};
+  const Exec wanted = make_exec(options.exec);
   std::vector<int> thread_counts{1};
-  if (const int all = make_exec(options.exec).threads(); all > 1) thread_counts.push_back(all);
+  if (wanted.threads() > 1) thread_counts.push_back(wanted.threads());
   Table table({"preset", "size", "threads", "median ms", "p99 ms", "overlapping", "images"});
   Json runs = Json::array();
   for (const auto& [size, disparities] : kRuns) {
@@ -449,7 +467,8 @@ int report_machine(BenchOptions options) {
       options.input.config.preset = preset;
       options.input.config.sets = {std::string("match.num_disparities=") + disparities};
       for (const int threads : thread_counts) {
-        const Exec exec = Exec::with_threads(threads, make_exec(options.exec).target);
+        Exec exec = Exec::with_threads(threads, wanted.target);
+        exec.device = wanted.device;
         const Findings found = measured(draw(options), exec, limits_of(options, kOfARun), !options.no_opencv);
         const Quantiles wall = quantiles(found.times.frame.wall_ms);
         table.add({preset, std::string(size) + "x" + disparities, std::to_string(threads), ms(wall.median),
@@ -497,6 +516,7 @@ int bench(const BenchOptions& options, bool drawn) {
                                   limits_of(options, kByDefault), !options.no_opencv);
   if (options.json) write_json(*options.json, bench_json(found));
   std::cout << heading(found) << "\n" << stage_table(found.times) << "\n" << summary(found);
+  std::cout << device_table(exec);
   if (!options.no_opencv) std::cout << "\n" << peer_table(found);
   std::cout << accuracy_table(found);
   return 0;
@@ -513,6 +533,7 @@ Work declare_bench(CLI::App& app) {
   app.add_option("--size", options->size, "size of the rendered pair if LEFT is not given; default: 640x480")
       ->type_name("WxH");
   add_exec_options(app, options->exec);
+  add_device_option(app, options->exec);
   app.add_option("--frames", options->frames, "frames to time after one warm-up frame")
       ->check(CLI::Range(1, kMaxFrames).name(""))
       ->type_name("N");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/core/target.hpp>
+#include <cairn/device/device.hpp>
 #include <cairn/input/frame_list.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/config_files.hpp>
@@ -95,17 +96,39 @@ void add_exec_options(CLI::App& app, ExecOptions& options) {
       ->type_name("NAME");
 }
 
+void add_device_option(CLI::App& app, ExecOptions& options) {
+  options.takes_device = true;
+  app.add_option("--device", options.device,
+                 "graphics processor for matching: off, auto, or the number or name of one that `cairn info` "
+                 "lists; results do not change; default: $CAIRN_DEVICE, else off")
+      ->type_name("NAME");
+}
+
+namespace {
+
+/// What a user wants, and where it was said; both empty if nowhere.
+std::pair<std::string, const char*> wanted(const std::string& option, const char* name,
+                                           const char* variable) {
+  if (!option.empty()) return {option, name};
+  const char* const value = std::getenv(variable);
+  return value != nullptr && *value != '\0' ? std::pair(std::string(value), variable)
+                                            : std::pair(std::string(), "");
+}
+
+}  // namespace
+
 Target wanted_target(const std::string& option) {
-  const char* variable = std::getenv("CAIRN_TARGET");
-  const bool from_environment = option.empty() && variable != nullptr && *variable != '\0';
-  if (option.empty() && !from_environment) return Target::best;
-  return cairn::wanted_target(from_environment ? std::string_view(variable) : option,
-                              from_environment ? "CAIRN_TARGET" : "--target");
+  const auto [name, source] = wanted(option, "--target", "CAIRN_TARGET");
+  return name.empty() ? Target::best : cairn::wanted_target(name, source);
 }
 
 Exec make_exec(const ExecOptions& options) {
   Exec exec = Exec::with_threads(options.threads, wanted_target(options.target));
   exec.pool = Pool::make();
+  if (options.takes_device) {
+    const auto [name, source] = wanted(options.device, "--device", "CAIRN_DEVICE");
+    exec.device = device::open(name, source, [](const std::string& says) { std::cerr << says + "\n"; });
+  }
   return exec;
 }
 

@@ -46,9 +46,14 @@ std::vector<OptionInfo> sequence_options(const ConfigOptions& config);
 struct ExecOptions {
   int threads = 0;  // 0 = one per processor
   std::string target;
+  bool takes_device = false;  // of a command that matches
+  std::string device;
 };
 void add_exec_options(CLI::App& app, ExecOptions& options);
-/// With a pool, so that the frames of a folder share buffers.
+/// --device, for commands that match.
+void add_device_option(CLI::App& app, ExecOptions& options);
+/// With a pool, so that the frames of a folder share buffers. Opens the device, or says on stderr why not. Throws Error
+/// for a target or device that is not there.
 Exec make_exec(const ExecOptions& options);
 /// The instruction set from --target, else from the environment variable CAIRN_TARGET.
 Target wanted_target(const std::string& option);

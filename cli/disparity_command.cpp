@@ -114,6 +114,7 @@ Work declare_disparity(CLI::App& app) {
   auto options = std::make_shared<DisparityOptions>();
   add_input_options(app, options->input);
   add_exec_options(app, options->exec);
+  add_device_option(app, options->exec);
   app.add_option("-o,--output", options->output,
                  "disparity: file.png (16 bits, disparity x 256, 0 = hole) or file.pfm (float, inf = hole)")
       ->type_name("FILE");

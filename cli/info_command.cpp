@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/core/error.hpp>
 #include <cairn/core/target.hpp>
+#include <cairn/device/device.hpp>
 #include <cairn/timing/opencv_matchers.hpp>
 #include <iostream>
 
@@ -15,6 +17,28 @@ std::string names(const std::vector<Target>& targets) {
   std::string all;
   for (const Target target : targets) all += (all.empty() ? "" : " ") + std::string(name(target));
   return all;
+}
+
+std::string device_line(const device::Listed& one) {
+  std::string line = one.name + " (" + one.kind + ", " + one.driver + "; buffers up to " +
+                     std::to_string(one.largest_buffer_bytes / 1'000'000) + " MB, groups of " +
+                     std::to_string(one.group) + ", subgroups of " + std::to_string(one.subgroup) + ")";
+  if (!one.unusable.empty()) return line + "; cannot be used: " + one.unusable;
+  if (!one.not_by_itself.empty()) return line + "; not taken by auto: " + one.not_by_itself;
+  return line;
+}
+
+std::string device_list() {
+  std::string lines = "devices\n";
+  try {
+    const std::vector<device::Listed> all = device::devices();
+    for (std::size_t i = 0; i < all.size(); ++i)
+      lines += "  " + std::to_string(i) + "  " + device_line(all[i]) + "\n";
+    if (all.empty()) lines += "  none\n";
+  } catch (const Error& none) {
+    lines += std::string("  none: ") + none.what() + "\n";
+  }
+  return lines;
 }
 
 int show(const ExecOptions& options) {
@@ -32,6 +56,7 @@ int show(const ExecOptions& options) {
     what.resize(kColumn, ' ');
     std::cout << "  " << what << (part.is_in ? "yes" : std::string("no; needs ") + part.packages) << "\n";
   }
+  std::cout << device_list();
   return 0;
 }
 
@@ -52,6 +77,7 @@ std::vector<BuiltPart> built_parts() {
       {"recordings (MCAP), packed batch results", CAIRN_WITH_ZSTD != 0, "libzstd-dev"},
       {"live views: live --view", CAIRN_WITH_VIEW != 0, "libboost-dev libssl-dev"},
       {"topics of ROS 2 (Cyclone DDS)", CAIRN_WITH_DDS != 0, "cyclonedds-dev"},
+      {"graphics processors (Vulkan)", CAIRN_WITH_VULKAN != 0, "libvulkan-dev glslc"},
       {"manual pages", CAIRN_WITH_MANUAL != 0, "help2man"},
       {"Python module", CAIRN_WITH_PYTHON != 0, "python3-dev pybind11-dev, CAIRN_PYTHON=ON"},
   };

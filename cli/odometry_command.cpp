@@ -216,6 +216,7 @@ Work declare_odometry(CLI::App& app) {
       ->capture_default_str();
   add_config_options(app, options->config);
   add_exec_options(app, options->exec);
+  add_device_option(app, options->exec);
   app.add_option("-o,--output", options->output, "file for the poses; default: standard output")
       ->type_name("FILE");
   app.footer(

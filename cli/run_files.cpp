@@ -99,6 +99,7 @@ RunFiles::RunFiles(RunFilesOptions options, live::MessageForm form, const live::
 
 void RunFiles::offer(const live::LiveFramePtr& frame) {
   totals_.add(*frame);
+  device_ = frame->device;
   if (!files_) return;
   const TrackedFrame& step = frame->step;
   const io::LoadedImage& left = frame->pair->left;
@@ -141,20 +142,22 @@ Json RunFiles::summary_json() const {
   for (const OptionInfo& option : cairn::options(config_)) {
     if (option.active) settings[option.name] = option.value;
   }
-  return {{"cairn", CAIRN_VERSION},
-          {"source", input::without_password(source_name_)},
-          {"stamps", source_.stamps_from()},
-          {"state", state()},
-          {"frames", totals_.milliseconds.size()},
-          {"milliseconds", {{"median", totals_.percentile(0.5)}, {"p99", totals_.percentile(0.99)}}},
-          {"path_m", totals_.path_m},
-          {"lost_frames", totals_.lost},
-          {"keyframes", totals_.keyframes},
-          {"refusals", refusals},
-          {"reliability", reliability},
-          {"tracks", totals_.confirmed.size()},
-          {"remarks", remarks},
-          {"options", settings}};
+  Json all{{"cairn", CAIRN_VERSION},
+           {"source", input::without_password(source_name_)},
+           {"stamps", source_.stamps_from()},
+           {"state", state()},
+           {"frames", totals_.milliseconds.size()},
+           {"milliseconds", {{"median", totals_.percentile(0.5)}, {"p99", totals_.percentile(0.99)}}},
+           {"path_m", totals_.path_m},
+           {"lost_frames", totals_.lost},
+           {"keyframes", totals_.keyframes},
+           {"refusals", refusals},
+           {"reliability", reliability},
+           {"tracks", totals_.confirmed.size()},
+           {"remarks", remarks},
+           {"options", settings}};
+  if (device_) all["device"] = output::json_of(*device_);
+  return all;
 }
 
 void RunFiles::finish() {

@@ -70,6 +70,7 @@ class RunFiles : public live::Sink {
   std::string source_name_;
   FollowConfig config_;
   RunTotals totals_;
+  std::optional<DeviceReport> device_;
   std::optional<output::FollowFiles> files_;
   std::optional<output::FollowPage> page_;
 };

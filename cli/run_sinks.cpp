@@ -35,6 +35,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   add_sensor_options(app, options.sensors);
   add_config_options(app, options.config);
   add_exec_options(app, options.exec);
+  add_device_option(app, options.exec);
   add_run_files_options(app, options.files);
   app.add_flag("--json-lines", options.json_lines, "one line of JSON per frame on standard output");
   add_record_options(app, options.record);

@@ -430,6 +430,7 @@ Work declare_segment(CLI::App& app) {
   options->input.takes_maps = true;
   add_map_options(app, options->input.maps);
   add_exec_options(app, options->exec);
+  add_device_option(app, options->exec);
   app.add_option("-o,--output", options->output,
                  "output folder for objects.json, maps and images (docs/formats.md)")
       ->type_name("DIR");

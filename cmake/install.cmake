@@ -1,4 +1,4 @@
-# `cmake --install`: the components library, sequences, video, gstreamer, ros2, dev and tools; docs/install.md
+# `cmake --install`: the components library, sequences, video, gstreamer, ros2, vulkan, dev and tools; docs/install.md
 # describes their use.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cairn)
@@ -19,7 +19,7 @@ endfunction()
 # All other headers are private: they may change or disappear in any version.
 set(private_headers
   core/disjoint_sets core/each_index core/highway_targets stereo/label_kernels_plain core/nearest core/stage_clock
-  core/pool_memory core/random core/scratch core/statistics
+  core/pair_copy core/pool_memory core/random core/scratch core/statistics
   image/gaussian image/local_contrast image/prefilter image/sparse_points image/texture
   stereo/byte_lanes_plain stereo/islands stereo/lanes_plain stereo/memory
   scene/floor_search scene/plane_fit scene/plane_through_pairs
@@ -28,6 +28,7 @@ set(private_headers
   objects/object_match objects/ranks pipeline/match_and_check pipeline/methods pipeline/option_walk pipeline/scenes_ahead diagnosis/robust_fit
   sequence/assign sequence/changes sequence/kalman sequence/landmark_geometry sequence/motion_fit sequence/twist
   io/calibration_forms io/frame_names io/load_module io/raster io/read_file io/sha256 io/yaml_text
+  device/careful_device device/engine device/module
   input/frame_list input/frame_watch input/mcap_sequence input/mcap_topics input/ros_depth io/names_and_numbers
   input/open_parts input/sequence_scores_json sequence/stamp_pairing io/text_lines
   live/topics output/drawing output/json output/json_line web/html_template web/live_page web/page_parts ros/mcap_format
@@ -37,7 +38,7 @@ list(JOIN private_headers "|" private_headers)
 
 set(not_built)
 if(NOT CAIRN_IO)
-  list(APPEND not_built REGEX "/cairn/(io|output)/|/cairn/opencv\\.hpp$" EXCLUDE)
+  list(APPEND not_built REGEX "/cairn/(device|io|output)/|/cairn/opencv\\.hpp$" EXCLUDE)
 endif()
 if(NOT CAIRN_HAS_TRACKING)
   list(APPEND not_built REGEX "/cairn/(sequence|input|ros|live)/|/output/(follow|track|trajectory)_[a-z]+\\.hpp$" EXCLUDE)
@@ -47,7 +48,7 @@ install(DIRECTORY cairn/ DESTINATION ${include_dir} COMPONENT dev FILES_MATCHING
   PATTERN "*.hpp"
   PATTERN "*-inl.hpp" EXCLUDE
   REGEX "/(${private_headers})\\.hpp$" EXCLUDE
-  REGEX "/cairn/(batch|timing|fitted)$|/(video|camera|dds)$" EXCLUDE
+  REGEX "/cairn/(batch|timing|fitted)$|/(video|camera|dds|vulkan)$" EXCLUDE
   ${not_built})
 if(CAIRN_IO)
   cairn_install_library(cairn_io cairnIoTargets library)
@@ -151,6 +152,9 @@ if(CAIRN_IO)
   endif()
   if(TARGET cairn_dds)
     install(TARGETS cairn_dds LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cairn COMPONENT ros2)
+  endif()
+  if(TARGET cairn_vulkan)
+    install(TARGETS cairn_vulkan LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/cairn COMPONENT vulkan)
   endif()
   set(manual ${PROJECT_BINARY_DIR}/manual)
   if(CAIRN_HELP2MAN)

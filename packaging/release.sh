@@ -114,7 +114,7 @@ TEXT
   for deb in "$new"/*.deb; do dpkg-deb -f "$deb" Depends; done |
     tr ',|' '\n\n' | sed 's/(.*//; s/ //g; /^$/d; /cairn/d' | sort -u |
     while read -r package; do third_party_row "$package" "at run time"; done
-  for package in ${boost:-libboost-dev} libcli11-dev libdlib-dev libeigen3-dev libhwy-dev libsqlitecpp-dev nlohmann-json3-dev pybind11-dev; do
+  for package in ${boost:-libboost-dev} libcli11-dev libdlib-dev libeigen3-dev libhwy-dev libsqlitecpp-dev libvulkan-dev nlohmann-json3-dev pybind11-dev; do
     third_party_row "$package" "compiled in"
   done
 }

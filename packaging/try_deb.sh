@@ -101,6 +101,8 @@ say "modules"
 echo "no video" >"$root/tmp/broken.mp4"
 try_module cairn-video "cannot be opened as a video" follow /tmp/broken.mp4 --layout side_by_side
 try_module cairn-gstreamer 'no element "no_such_element"' follow gst:no_such_element
+# Without the packages that it recommends there is no driver.
+try_module cairn-vulkan "finds no driver" segment /usr/share/doc/cairn/examples/four_in_a_row --device nonsense
 try_module cairn-ros2 "received nothing on /nothing" follow ros2:/nothing --open-timeout 1
 
 say "headers and libraries for C++"

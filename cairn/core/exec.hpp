@@ -34,19 +34,23 @@ using Observer = std::function<void(std::string_view stage, const StageResult& r
 /// The instruction set of the kernels. Never changes a result bit.
 enum class Target : std::uint8_t { best, scalar, sse4, avx2, avx512, neon };
 
-class Workers;  // persistent threads; parallel.cpp
+class Workers;      // persistent threads; parallel.cpp
+class MatchDevice;  // a graphics processor; stereo/match_device.hpp
 
-/// How a frame is computed: threads, instruction set, memory of the images, observer. Never changes a result
-/// (tested). Exec{} is one thread, the best target, images from the heap, no observer.
+/// How a frame is computed: threads, instruction set, memory of the images, observer, device. Never changes a result
+/// (tested). Exec{} is one thread, the best target, images from the heap, no observer, no device.
 struct Exec {
   Target target = Target::best;
   Pool pool;
   Observer observe;
-  std::shared_ptr<Workers> workers;  // null = only the calling thread
+  std::shared_ptr<Workers> workers;     // null = only the calling thread
+  std::shared_ptr<MatchDevice> device;  // null = the processor matches
 
   /// `threads` ≥ 1 persistent threads, including the calling one; 0 = one per processor.
   static Exec with_threads(int threads, Target target = Target::best);
   [[nodiscard]] int threads() const;
+  /// Whether part of the next frame can be computed beside this one: prefetch() has an effect.
+  [[nodiscard]] bool overlaps_frames() const { return threads() > 1 || device != nullptr; }
   /// The Exec of a Later: without an observer and, if the work is concurrent, with a pool of its own.
   [[nodiscard]] Exec beside() const;
 };

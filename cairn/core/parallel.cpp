@@ -135,7 +135,7 @@ int Exec::threads() const {
 }
 
 Exec Exec::beside() const {
-  return {target, workers ? pool.beside() : pool, {}, workers};
+  return {target, workers ? pool.beside() : pool, {}, workers, device};
 }
 
 void parallel_for(const Exec& exec, int count, int grain, const std::function<void(int, int)>& body) {

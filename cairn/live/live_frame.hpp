@@ -15,6 +15,7 @@
 #include <cairn/input/sequence.hpp>
 #include <cairn/live/sequence_run.hpp>
 #include <cairn/output/results.hpp>
+#include <cairn/stereo/match_device.hpp>
 
 /// The loop of a robot: pairs arrive from a camera, the results of the newest go to sinks.
 namespace cairn::live {
@@ -75,7 +76,8 @@ struct LiveFrame {
   std::vector<output::StageTime> stages;
   Drops drops;
   input::SourceStatus source;
-  double rate_hz = 0;  // of processed frames, over about a second
+  std::optional<DeviceReport> device;  // so far; nullopt without one
+  double rate_hz = 0;                  // of processed frames, over about a second
   // The configuration used; the revision counts the changes.
   std::shared_ptr<const FollowConfig> config;
   std::uint64_t revision = 0;

@@ -169,17 +169,25 @@ Runner::PairPtr Runner::newest(NewestSlot<PairPtr>& slot) {
     pair->after_gap = pair->after_gap || std::exchange(is_after_gap_, false);
     const std::lock_guard lock(prefetched_mutex_);
     is_working_ = true;
-    if (exec_.threads() > 1) prefetched_ = slot.take(0ns).value_or(nullptr);
+    if (overlaps_frames()) prefetched_ = slot.take(0ns).value_or(nullptr);
     if (prefetched_) prefetch(*prefetched_);
     return pair;
   }
   return nullptr;
 }
 
+/// Whether a pair can be begun beside the one before: else the newest is better.
+bool Runner::overlaps_frames() const {
+  if (options_.step) return false;
+  if (exec_.threads() > 1) return true;
+  const std::lock_guard lock(mutex_);
+  return exec_.device && exec_.device->takes_early(config_->segmentation.match);
+}
+
 /// Takes a pair that arrives while a frame is at work, and no other has been begun: the threads share both frames.
 bool Runner::begins_early(input::SequenceFrame& pair) {
   const std::lock_guard lock(prefetched_mutex_);
-  if (exec_.threads() == 1 || !is_working_ || prefetched_) return false;
+  if (!overlaps_frames() || !is_working_ || prefetched_) return false;
   prefetched_ = std::make_shared<input::SequenceFrame>(std::move(pair));
   prefetch(*prefetched_);
   return true;
@@ -256,6 +264,7 @@ std::shared_ptr<LiveFrame> Runner::work(PairPtr pair, const input::SourceStatus&
   frame->source = status;
   drops_.at_source = frame->source.dropped + frame->source.unpaired;
   frame->drops = drops_;
+  if (exec_.device) frame->device = exec_.device->report();
   frame->config = used_config_;
   frame->revision = used_revision_;
   recent_.push_back(frame->done);

@@ -101,21 +101,22 @@ Message stats(const LiveFrame& frame, const MessageForm& form) {
                {"replaced", frame.drops.replaced},
                {"too_old", frame.drops.too_old}};
   if (form.not_published) dropped["not_published"] = *form.not_published;
-  const Json all{{"frame", frame.step.index},
-                 {"name", frame.pair->name},
-                 {"index", frame.pair->index},
-                 {"stamp_ns", frame.step.stamp.ns},
-                 {"objects", frame.step.frame.objects.list.size()},
-                 {"tracks", frame.step.tracks.list.size()},
-                 {"rate_hz", frame.rate_hz},
-                 {"waited_ms", ms_between(frame.arrived, frame.started)},
-                 {"worked_ms", ms_between(frame.started, frame.done)},
-                 {"stages_ms", stages},
-                 {"dropped", dropped},
-                 {"connected", frame.source.is_connected},
-                 {"trouble", frame.source.trouble},
-                 {"findings", output::json_of(frame.findings)},
-                 {"revision", frame.revision}};
+  Json all{{"frame", frame.step.index},
+           {"name", frame.pair->name},
+           {"index", frame.pair->index},
+           {"stamp_ns", frame.step.stamp.ns},
+           {"objects", frame.step.frame.objects.list.size()},
+           {"tracks", frame.step.tracks.list.size()},
+           {"rate_hz", frame.rate_hz},
+           {"waited_ms", ms_between(frame.arrived, frame.started)},
+           {"worked_ms", ms_between(frame.started, frame.done)},
+           {"stages_ms", stages},
+           {"dropped", dropped},
+           {"connected", frame.source.is_connected},
+           {"trouble", frame.source.trouble},
+           {"findings", output::json_of(frame.findings)},
+           {"revision", frame.revision}};
+  if (frame.device) all["device"] = output::json_of(*frame.device);
   return ros::encode(ros::String{output::json_text(all)});
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cairn/sequence/pose.hpp>
+#include <cairn/stereo/match_device.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -42,6 +43,18 @@ Json shortest(float value) {
   double nearest = 0;
   std::from_chars(text.data(), end, nearest);
   return nearest;
+}
+
+Json json_of(const DeviceReport& report) {
+  Json kernels = Json::object();
+  for (const auto& [kernel, ms] : report.kernels_ms) kernels[kernel] = rounded(ms);
+  return {{"wanted", report.wanted},
+          {"name", report.name},
+          {"on_device", report.on_device},
+          {"on_processor", report.on_processor},
+          {"reason", report.reason},
+          {"kernels_ms", kernels},
+          {"memory_bytes", report.memory_bytes}};
 }
 
 }  // namespace cairn::output

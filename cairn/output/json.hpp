@@ -12,6 +12,7 @@
 namespace cairn {
 struct Config;
 struct ControlEvent;
+struct DeviceReport;
 struct Finding;
 struct FindingChange;
 struct Frame;
@@ -56,6 +57,8 @@ Json json_of(const Config& config);
 Json json_of(const Frame& frame, const Provenance& provenance);
 /// `names`: of the pairs that Finding::frames counts.
 Json json_of(const Finding& finding, const std::vector<std::string>& names);
+/// Of a run, or of a measurement.
+Json json_of(const DeviceReport& report);
 /// Those of a run: a list, without names of pairs.
 Json json_of(const std::vector<Finding>& findings);
 Json json_of(const PairMeasures& measures);

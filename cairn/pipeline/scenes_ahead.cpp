@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/core/pair_copy.hpp>
 #include <cairn/pipeline/scenes_ahead.hpp>
-#include <cstring>
+#include <cairn/stereo/match_device.hpp>
 #include <future>
 #include <string>
 #include <system_error>
@@ -12,38 +13,6 @@
 
 namespace cairn {
 namespace {
-
-template <class T>
-Image<T> copied(View<const T> from, const Pool& pool) {
-  Image<T> copy(from.size(), pool);
-  for (int y = 0; y < from.height(); ++y) std::copy_n(from.row(y), from.width(), copy.row(y));
-  return copy;
-}
-
-template <class T>
-bool is_equal(View<const T> a, View<const T> b) {
-  if (a.size() != b.size()) return false;
-  const std::size_t bytes = static_cast<std::size_t>(a.width()) * sizeof(T);
-  for (int y = 0; y < a.height(); ++y)
-    if (std::memcmp(a.row(y), b.row(y), bytes) != 0) return false;
-  return true;
-}
-
-struct PairCopy {
-  Image<Gray> left;
-  Image<Gray> right;
-  Image<Rgb> left_rgb;
-
-  PairCopy(const StereoPair& from, const Pool& pool)
-      : left(copied(from.left(), pool)),
-        right(copied(from.right(), pool)),
-        left_rgb(copied(from.left_rgb(), pool)) {}
-  [[nodiscard]] StereoPair pair() const { return StereoPair::from(left, right, left_rgb); }
-  [[nodiscard]] bool equals(const StereoPair& pair) const {
-    return is_equal<Gray>(left, pair.left()) && is_equal<Gray>(right, pair.right()) &&
-           is_equal<Rgb>(left_rgb, pair.left_rgb());
-  }
-};
 
 Frame whole_frame(FrameInput in, const Run& run, const ObjectChoice& choose) {
   return run.config.pipeline.method == Method::paper ? segment_by_paper(std::move(in), run)
@@ -155,6 +124,7 @@ void ScenesAhead::open_lanes() {
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     lanes_.at(i).exec = Exec::with_threads(share.at(i), exec_.target);
     lanes_.at(i).exec.pool = pools.at(i);
+    lanes_.at(i).exec.device = exec_.device;
   }
   is_open_ = true;
 }
@@ -165,10 +135,27 @@ ScenesAhead::Lane* ScenesAhead::unused_lane() {
   return nullptr;
 }
 
+void ScenesAhead::begin_on_device(const StereoPair& pair, const Config& config) {
+  if (!exec_.device->takes_early(config.match)) return;
+  Exec exec = exec_;
+  exec.observe = nullptr;
+  // Computed again by segment(): it costs a twentieth of what the device saves.
+  const EpipolarCorrection aligned =
+      config.epipolar_correction.max_rows < 0
+          ? EpipolarCorrection{}
+          : correct_epipolar(pair, config.match, config.epipolar_correction, exec);
+  const StereoPair to_match = aligned.right.empty() ? pair : StereoPair::from(pair.left(), aligned.right);
+  exec.device->begin(to_match, config.match, config.semi_global);
+}
+
 void ScenesAhead::begin(const StereoPair& pair) {
-  if (exec_.threads() == 1) return;
+  if (!exec_.overlaps_frames()) return;
   const std::lock_guard lock(mutex_);
   validate(*config_, pair.size(), rig_.has_value());
+  if (exec_.threads() == 1) {
+    begin_on_device(pair, *config_);
+    return;
+  }
   open_lanes();
   Lane* const lane = unused_lane();
   if (lane == nullptr) return;

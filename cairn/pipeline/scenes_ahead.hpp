@@ -22,8 +22,8 @@ class ScenesAhead {
   ScenesAhead(const ScenesAhead&) = delete;
   ScenesAhead& operator=(const ScenesAhead&) = delete;
 
-  /// Begins the frame of a pair, of which it makes a copy. No effect with a single thread, and while two frames are at
-  /// work. Throws Error like validate() of configuration and size.
+  /// Begins the frame of a pair, of which it makes a copy; with a single thread, its matches only, on the device. No
+  /// effect without either, and while two frames are at work. Throws Error like validate() of configuration and size.
   void begin(const StereoPair& pair);
   /// The frame of a pair: the one begun with equal images, or a new one. Drops what was begun before it. Of a frame
   /// that was begun, the observer gets the stages up to the choice now, with their times and without results. Throws
@@ -49,6 +49,7 @@ class ScenesAhead {
   /// Of the frames that were begun and are wanted.
   Lane* oldest(const std::function<bool(const Begun&)>& is_wanted);
   void open_lanes();
+  void begin_on_device(const StereoPair& pair, const Config& config);
 
   mutable std::mutex mutex_;
   std::optional<StereoRig> rig_;

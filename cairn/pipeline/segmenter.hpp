@@ -27,7 +27,7 @@ class Segmenter {
   /// Begins the frame of the pair after the next one: call it before segment() of the next pair, so that both frames
   /// are computed at once, each with half of the threads. Two threads then do almost twice the frames of one. The
   /// images are copied. segment() finds by their pixels what was begun, and returns the same frame without this call.
-  /// No effect with one thread. Throws Error like segment().
+  /// With one thread, only the matches of a device (Exec::device) are begun. Throws Error like segment().
   void prefetch(const StereoPair& pair) const;
 
   [[nodiscard]] const Config& config() const { return config_; }

@@ -2,16 +2,17 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
+#include <cairn/stereo/match_device.hpp>
 #include <cairn/stereo/semi_global.hpp>
 #include <cairn/stereo/semi_global_kernels.hpp>
 #include <cmath>
+#include <utility>
 
 namespace cairn {
 namespace {
 
 using kernels::SearchLayout;
 using kernels::SemiGlobalKernels;
-using kernels::SemiGlobalPenalties;
 using kernels::SemiGlobalTask;
 
 constexpr int kMinColumns = 16;  // least number per thread
@@ -19,26 +20,6 @@ constexpr int kMinColumns = 16;  // least number per thread
 std::uint8_t in_cost_units(float penalty) {
   const auto steps = std::lround(penalty * static_cast<float>(kernels::kMaxCost));
   return static_cast<std::uint8_t>(std::clamp<long>(steps, 0, kernels::kMaxPenalty));
-}
-
-SemiGlobalPenalties table_of(const SemiGlobalConfig& config) {
-  SemiGlobalPenalties penalties;
-  penalties.small = in_cost_units(config.penalty_small);
-  float step = 0;
-  for (std::uint8_t& large : penalties.large) {
-    const float falling = config.penalty_large / (1.0F + config.penalty_edge * step);
-    large = std::max(in_cost_units(std::max(0.5F, falling)), penalties.small);
-    step += 1.0F;
-  }
-  return penalties;
-}
-
-Matches make_matches(Size size, MatchMaps maps, const Pool& pool) {
-  const Size minimum = maps != MatchMaps::winner ? size : Size{};
-  const Size full = maps == MatchMaps::full ? size : Size{};
-  return {Image<std::int16_t>(size, pool), Image<std::int16_t>(full, pool), Image<std::int8_t>(),
-          Image<float>(size, pool),        Image<float>(minimum, pool),     Image<float>(full, pool),
-          Image<float>(minimum, pool),     Image<float>(minimum, pool)};
 }
 
 /// One reversed row of the right image: 255 for its pixels, 0 for the margins.
@@ -99,6 +80,26 @@ Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
   return kernels::match_in_bands(pair, config, penalties, rows_of_band(layout), exec);
 }
 
+Matches kernels::make_matches(Size size, MatchMaps maps, const Pool& pool) {
+  const Size minimum = maps != MatchMaps::winner ? size : Size{};
+  const Size full = maps == MatchMaps::full ? size : Size{};
+  return {Image<std::int16_t>(size, pool), Image<std::int16_t>(full, pool), Image<std::int8_t>(),
+          Image<float>(size, pool),        Image<float>(minimum, pool),     Image<float>(full, pool),
+          Image<float>(minimum, pool),     Image<float>(minimum, pool)};
+}
+
+kernels::SemiGlobalPenalties kernels::penalty_table(const SemiGlobalConfig& config) {
+  SemiGlobalPenalties penalties;
+  penalties.small = in_cost_units(config.penalty_small);
+  float step = 0;
+  for (std::uint8_t& large : penalties.large) {
+    const float falling = config.penalty_large / (1.0F + config.penalty_edge * step);
+    large = std::max(in_cost_units(std::max(0.5F, falling)), penalties.small);
+    step += 1.0F;
+  }
+  return penalties;
+}
+
 Matches kernels::match_in_bands(const StereoPair& pair, const MatchConfig& config,
                                 const SemiGlobalConfig& penalties, int band_rows, const Exec& exec) {
   const SemiGlobalKernels& run = semi_global_kernels(exec);
@@ -118,7 +119,7 @@ Matches kernels::match_in_bands(const StereoPair& pair, const MatchConfig& confi
   Image<std::uint8_t> along({volume.width, 1}, 0, exec.pool);
   Image<std::uint8_t> least({size.width, 1}, 0, exec.pool);
   const SemiGlobalTask task{.layout = layout,
-                            .penalties = table_of(penalties),
+                            .penalties = penalty_table(penalties),
                             .maps = config.maps,
                             .left = pair.left(),
                             .right = pair.right(),
@@ -140,6 +141,9 @@ Matches kernels::match_in_bands(const StereoPair& pair, const MatchConfig& confi
 
 Matches match(const StereoPair& pair, const MatchConfig& config, const SemiGlobalConfig& penalties,
               const Exec& exec) {
+  if (exec.device) {
+    if (auto found = exec.device->match(pair, config, penalties, exec)) return std::move(*found);
+  }
   return config.method == MatchMethod::semi_global ? match_semi_global(pair, config, penalties, exec)
                                                    : match_windows(pair, config, exec);
 }

@@ -50,7 +50,7 @@ void fields(SemiGlobalConfig& c, V&& v) {
 Matches match_semi_global(const StereoPair& pair, const MatchConfig& config,
                           const SemiGlobalConfig& penalties, const Exec& exec);
 
-/// match_windows() or match_semi_global(), according to config.method.
+/// match_windows() or match_semi_global(), according to config.method; on exec.device if there is one that can.
 Matches match(const StereoPair& pair, const MatchConfig& config, const SemiGlobalConfig& penalties,
               const Exec& exec);
 

@@ -25,6 +25,10 @@ struct SemiGlobalPenalties {
   std::uint8_t small = 0;
   std::array<std::uint8_t, 256> large{};  // by the step of intensity
 };
+SemiGlobalPenalties penalty_table(const SemiGlobalConfig& config);
+
+/// The images of semi-global matches, with undefined content.
+Matches make_matches(Size size, MatchMaps maps, const Pool& pool);
 
 /// The search range, and the position of the candidates of a left pixel in a reversed right row: contiguous,
 /// lane i for first_d + i.

@@ -124,7 +124,7 @@ void add_frame(FrameTimes& all, const FrameClock& clock, const TimedStage& frame
 
 void add_overlapping(FrameTimes& all, const StereoPair& pair, const Segmenter& segmenter) {
   const int frames = all.frames();
-  if (segmenter.exec().threads() == 1 || frames < 2) return;
+  if (!segmenter.exec().overlaps_frames() || frames < 2) return;
   const TimedStage whole = timed([&] {
     segmenter.prefetch(pair);  // the first frame; the pair is always the same
     for (int k = 0; k < frames; ++k) {

@@ -43,7 +43,7 @@ struct FrameTimes {
   std::int64_t first_allocations = 0;  // image buffers from the heap, in the first frame …
   std::int64_t later_allocations = 0;  // … and in all later ones
   // With Segmenter::prefetch(): wall time of a frame in the mean of as many frames, and peak size of the pool; 0 with
-  // one thread, or for a single frame.
+  // one thread and no device, or for a single frame.
   double overlapping_ms = 0;
   std::int64_t overlapping_pool_bytes = 0;
   int objects = 0;

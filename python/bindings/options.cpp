@@ -4,6 +4,7 @@
 
 #include <cairn/core/nearest.hpp>
 #include <cairn/core/target.hpp>
+#include <cairn/device/device.hpp>
 #include <cairn/io/config_files.hpp>
 
 #include "bindings.hpp"
@@ -44,7 +45,17 @@ PyConfig with(PyConfig config, const Settings& settings, const std::vector<std::
   return config;
 }
 
-Exec make_exec(int threads, const std::string& target) {
+/// From any thread, without the interpreter's lock: a thread that holds it may be waiting for this one.
+void warn_later(const std::string& says) {
+  auto text = std::make_unique<std::string>(says);
+  const auto warn = [](void* given) {
+    const std::unique_ptr<std::string> says_now(static_cast<std::string*>(given));
+    return PyErr_WarnEx(PyExc_RuntimeWarning, says_now->c_str(), 1);
+  };
+  if (Py_AddPendingCall(warn, text.get()) == 0) text.release();
+}
+
+Exec make_exec(int threads, const std::string& target, const std::string& wanted_device) {
   constexpr int kMaxThreads = 1024;
   if (threads < 0 || threads > kMaxThreads) {
     throw Error("threads: found " + std::to_string(threads) + ", expected 0 … " +
@@ -52,6 +63,7 @@ Exec make_exec(int threads, const std::string& target) {
   }
   Exec exec = Exec::with_threads(threads, wanted_target(target, "target"));
   exec.pool = Pool::make();
+  exec.device = device::open(wanted_device, "device", warn_later);
   return exec;
 }
 
@@ -111,6 +123,8 @@ void bind_config_and_exec(py::module_& m) {
   of_exec.def(py::init(&make_exec));
   shows(of_exec, "threads", &Exec::threads);
   shows(of_exec, "target", [](const Exec& self) { return std::string(name(active_target(self))); });
+  shows(of_exec, "device",
+        [](const Exec& self) { return self.device ? self.device->report().wanted : std::string("off"); });
   shows(of_exec, "heap_allocations", [](const Exec& self) { return self.pool.heap_allocations(); });
   m.def("exec_of_all_processors", [] { return Exec::with_threads(0); });
   m.def("compiled_targets", [] { return names_of(compiled_targets()); });

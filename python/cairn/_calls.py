@@ -301,7 +301,7 @@ def of_cpp(function):
     return checked(function, run=run)
 
 
-NO_EXEC = _cairn.Exec(1, "best")  # only for images
+NO_EXEC = _cairn.Exec(1, "best", "off")  # only for images
 # Further parameters of every stage; the last one only with images.
 STAGE_NAMED = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind, default=default) for name, kind, default in
                (("config", "Optional[Config]", None), ("exec", "Optional[Exec]", None), ("bgr", "bool", False))]

@@ -141,18 +141,21 @@ class Config:
 
 @describes(_cairn.Exec)
 class Exec:
-    """Execution settings: threads, instruction set and a pool of image buffers. They never change a result."""
+    """Execution settings: threads, instruction set, device and a pool of image buffers. They never change a result."""
 
     threads: int = doc("number of threads, including the caller's; 1 or more")
     target: str = doc("instruction set of the kernels")
+    device: str = doc("graphics processor that matches, as it was asked for; 'off': none")
     heap_allocations: int = doc("number of image buffers that the pool has allocated on the heap")
 
-    def __init__(self, threads: int = 0, target: str = "best") -> None:
-        """threads: 0 = one per processor. target: 'best' or one of supported_targets()."""
-        self._start(threads, target)
+    def __init__(self, threads: int = 0, target: str = "best", device: str = "off") -> None:
+        """threads: 0 = one per processor. target: 'best' or one of supported_targets(). device: 'off', 'auto', or the
+        number or name of a graphics processor that `cairn info` lists. What it cannot do, the processor does, with a
+        warning."""
+        self._start(threads, target, device)
 
     def __getstate__(self):
-        return self.threads, self.target
+        return self.threads, self.target, self.device
 
     def __setstate__(self, state):
         self.__init__(*state)

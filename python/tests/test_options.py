@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 the cairn authors
 """Options are listed, set and shown as in the library."""
 
+import pickle
 import re
 import subprocess
 
@@ -126,3 +127,18 @@ def test_exec_never_changes_a_result(sample):
         cairn.Exec(target="axv2")
     with pytest.raises(cairn.Error, match="threads: found -1"):
         cairn.Exec(-1)
+
+
+def test_a_device_never_changes_a_result(sample):
+    assert cairn.Exec().device == "off"
+    with pytest.raises(cairn.Error, match="device nonsense: "):
+        cairn.Exec(device="nonsense")
+    try:
+        on_device = cairn.Exec(1, device="0")
+    except cairn.Error as error:
+        pytest.skip(str(error))  # without Vulkan, or without a driver
+    assert on_device.device != "off"
+    assert pickle.loads(pickle.dumps(on_device)).device == on_device.device
+    assert same_frame(cairn.segment(sample.left, sample.right, sample.calibration, exec=on_device), sample.frame)
+    with pytest.warns(RuntimeWarning, match="match.method=window"):
+        cairn.segment(sample.left, sample.right, preset="paper", exec=on_device)

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cairn/cairn.hpp>
 #include <cairn/core/target.hpp>
+#include <cairn/stereo/match_device.hpp>
 #include <cstdint>
 #include <functional>
 #include <latch>
@@ -14,6 +16,11 @@
 #include <thread>
 #include <utility>
 #include <vector>
+
+#if CAIRN_WITH_VULKAN
+#include <cairn/device/careful_device.hpp>
+#include <cairn/device/vulkan/vulkan_engine.hpp>
+#endif
 
 namespace cairn {
 namespace {
@@ -201,6 +208,88 @@ struct Asked {
   std::vector<int> early;
   std::vector<int> segmented;
 };
+
+/// Matches like a device that is there for two pairs of three.
+class SometimesDevice final : public MatchDevice {
+ public:
+  [[nodiscard]] bool takes_early(const MatchConfig& config) const override {
+    return config.method == MatchMethod::semi_global;
+  }
+  void begin(const StereoPair& /*pair*/, const MatchConfig& /*config*/,
+             const SemiGlobalConfig& /*penalties*/) override {
+    ++begun;
+  }
+  std::optional<Matches> match(const StereoPair& pair, const MatchConfig& config,
+                               const SemiGlobalConfig& penalties, const Exec& exec) override {
+    if (config.method == MatchMethod::window || ++asked % 3 == 0) return std::nullopt;
+    return match_semi_global(pair, config, penalties, exec);
+  }
+  [[nodiscard]] DeviceReport report() const override { return {}; }
+
+  std::atomic<int> begun = 0;
+  std::atomic<int> asked = 0;
+};
+
+TEST(ExecLaw, WithOneThreadADeviceBeginsTheNextMatches) {
+  const auto device = std::make_shared<SometimesDevice>();
+  const samples::Sample sample = samples::load("overlap");
+  Exec exec;
+  exec.device = device;
+  const Segmenter segmenter(sample.suited(), sample.calibration.rig, exec);
+  const Frame expected = segment(sample.pair(), sample.calibration.rig, sample.suited(), {});
+  for (int k = 0; k < 4; ++k) {
+    segmenter.prefetch(sample.pair());
+    expect_same(segmenter.segment(sample.pair()), expected);
+  }
+  EXPECT_EQ(device->begun, 4);
+  EXPECT_EQ(device->asked, 4);
+}
+
+/// Without a device, and with each of these.
+std::vector<std::shared_ptr<MatchDevice>> devices_to_try() {
+  std::vector<std::shared_ptr<MatchDevice>> all{nullptr, std::make_shared<SometimesDevice>()};
+#if CAIRN_WITH_VULKAN
+  try {
+    all.push_back(std::make_shared<device::CarefulDevice>(
+        [] { return device::vulkan_engine(device::vulkan_library(), 0); }, device::Trust{}, nullptr));
+  } catch (const device::Unfit&) {
+    // No driver, not even in software.
+  }
+#endif
+  return all;
+}
+
+TEST(ExecLaw, DevicesChangeNoBit) {
+  for (const char* const name : {"overlap", "glossy_floor", "dim_light"}) {
+    const samples::Sample sample = samples::load(name);
+    for (const Config& preset : {Config(), Config::paper()}) {
+      const Config config = sample.suited(preset);
+      const Frame expected = segment(sample.pair(), sample.calibration.rig, config, {});
+      for (const auto& device : devices_to_try()) {
+        Exec exec = Exec::with_threads(2);
+        exec.device = device;
+        SCOPED_TRACE(std::string(name) + (device ? " on " + device->report().name : ""));
+        expect_same(segment(sample.pair(), sample.calibration.rig, config, exec), expected);
+      }
+    }
+  }
+}
+
+TEST(ExecLaw, FramesBegunEarlyChangeNoBitOnADevice) {
+  const std::array different{samples::load("overlap"), samples::load("four_in_a_row")};
+  for (const auto& device : devices_to_try()) {
+    Exec exec;
+    exec.device = device;
+    const Segmenter segmenter(different[0].suited(), different[0].calibration.rig, exec);
+    std::vector<Frame> expected;
+    for (const samples::Sample& sample : different)
+      expected.push_back(segment(sample.pair(), different[0].calibration.rig, different[0].suited(), {}));
+    for (const std::size_t k : {0U, 1U, 0U, 0U}) {
+      segmenter.prefetch(different.at(1 - k).pair());
+      expect_same(segmenter.segment(different.at(k).pair()), expected.at(k));
+    }
+  }
+}
 
 TEST(ExecLaw, FramesBegunEarlyChangeNoBit) {
   const std::array<samples::Sample, 3> different{samples::load("overlap"), samples::load("four_in_a_row"),

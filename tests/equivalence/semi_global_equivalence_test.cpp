@@ -5,54 +5,15 @@
 #include <cairn/core/target.hpp>
 #include <cairn/stereo/semi_global.hpp>
 #include <cairn/stereo/semi_global_kernels.hpp>
-#include <random>
 #include <vector>
 
 #include "reference/semi_global.hpp"
 #include "support/first_difference.hpp"
+#include "support/random_pair.hpp"
 
 namespace {
 
 using namespace cairn;
-
-/// Two windows of larger images, so that rows are unaligned and the stride is odd. Uniform patches and few
-/// grey levels in places, so that costs tie and every penalty occurs.
-struct ImagePair {
-  Size size;
-  std::ptrdiff_t stride;
-  std::vector<Gray> left;
-  std::vector<Gray> right;
-
-  ImagePair(Size picture_size, unsigned seed)
-      : size(picture_size), stride(size.width + 7), left(count()), right(count()) {
-    std::mt19937 random(seed);
-    for (std::size_t i = 0; i < left.size(); ++i) {
-      left[i] = dot(static_cast<std::uint32_t>(random()), i);
-      right[i] = i >= 3 && random() % 4 != 0 ? left[i - 3] : dot(static_cast<std::uint32_t>(random()), i);
-    }
-  }
-  [[nodiscard]] StereoPair pair() const {
-    return StereoPair::from(View<const Gray>(left.data() + 3, size, stride),
-                            View<const Gray>(right.data() + 3, size, stride));
-  }
-
- private:
-  [[nodiscard]] std::size_t count() const {
-    return static_cast<std::size_t>(stride) * static_cast<std::size_t>(size.height + 1);
-  }
-  static Gray dot(std::uint32_t bits, std::size_t i) {
-    switch (i / 53 % 4) {
-      case 0:
-        return 0;
-      case 1:
-        return static_cast<Gray>(100 + bits % 4);
-      case 2:
-        return static_cast<Gray>(250 + bits % 6);
-      default:
-        return static_cast<Gray>(bits >> 24);
-    }
-  }
-};
 
 MatchConfig search(int first, int count, MatchMaps maps = MatchMaps::full) {
   return {.method = MatchMethod::semi_global, .min_disparity = first, .num_disparities = count, .maps = maps};
@@ -60,7 +21,7 @@ MatchConfig search(int first, int count, MatchMaps maps = MatchMaps::full) {
 
 void expect_equal_to_reference(Size size, const MatchConfig& config, const SemiGlobalConfig& penalties = {},
                                const std::vector<int>& thread_counts = {1}) {
-  const ImagePair images(size, static_cast<unsigned>(size.width * 31 + config.num_disparities));
+  const RandomPair images(size, static_cast<unsigned>(size.width * 31 + config.num_disparities));
   const Matches expected = reference::match_semi_global(images.pair(), config, penalties);
   for (const Target target : supported_targets()) {
     for (const int threads : thread_counts) {
@@ -108,7 +69,7 @@ TEST(SemiGlobalEquivalence, HoldsIfTheImagesAreSplitIntoChunksOfRows) {
 
 TEST(SemiGlobalEquivalence, HoldsForEverySplitIntoBands) {
   const Size size{37, 23};
-  const ImagePair images(size, 5);
+  const RandomPair images(size, 5);
   for (const int count : {9, 70}) {
     const Matches expected = reference::match_semi_global(images.pair(), search(-2, count), {});
     for (const Target target : supported_targets()) {
