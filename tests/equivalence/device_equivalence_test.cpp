@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cairn/core/random.hpp>
-#include <cairn/device/vulkan/instance.hpp>
 #include <cairn/device/vulkan/vulkan_engine.hpp>
 #include <span>
 #include <string>
@@ -22,18 +21,18 @@ using namespace cairn;
 using device::Engine;
 using device::Tuning;
 
-std::size_t device_count() {
+std::vector<device::Listed> all_devices() {
   try {
-    return device::Instance(device::vulkan_library()).devices().size();
+    return device::vulkan_devices(device::vulkan_library());
   } catch (const device::Unfit&) {
-    return 0;
+    return {};
   }
 }
 
 class DeviceEquivalence : public testing::Test {
  protected:
   void SetUp() override {
-    if (device_count() == 0)
+    if (all_devices().empty())
       GTEST_SKIP() << "no Vulkan device (package mesa-vulkan-drivers has one in software)";
   }
 
@@ -73,7 +72,7 @@ class DeviceEquivalence : public testing::Test {
 
 TEST_F(DeviceEquivalence, HoldsForRandomPairsRangesAndPenaltiesInBothWaysToTalk) {
   constexpr std::array kCounts{7, 30, 41, 64, 100};
-  const std::uint32_t subgroup = device::Instance(device::vulkan_library()).traits().front().listed.subgroup;
+  const std::uint32_t subgroup = all_devices().front().subgroup;
   for (const bool shuffles : {true, false}) {
     EXPECT_EQ(engine({.shuffles = shuffles})->variant(30).find("shuffles") != std::string::npos,
               shuffles && subgroup >= 4);

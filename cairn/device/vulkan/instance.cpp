@@ -130,4 +130,10 @@ std::vector<Traits> Instance::traits() const {
   return all;
 }
 
+std::vector<Listed> vulkan_devices(FindFunction find) {
+  std::vector<Listed> all;
+  for (const Traits& traits : Instance(find).traits()) all.push_back(traits.listed);
+  return all;
+}
+
 }  // namespace cairn::device

@@ -4,19 +4,12 @@
 #include <cairn/core/error.hpp>
 #include <cairn/device/careful_device.hpp>
 #include <cairn/device/module.hpp>
-#include <cairn/device/vulkan/instance.hpp>
 #include <cairn/device/vulkan/vulkan_engine.hpp>
 #include <cctype>
 #include <charconv>
 
 namespace cairn::device {
 namespace {
-
-std::vector<Listed> listed() {
-  std::vector<Listed> all;
-  for (const Traits& traits : Instance(vulkan_library()).traits()) all.push_back(traits.listed);
-  return all;
-}
 
 std::string in_lower_case(std::string text) {
   std::ranges::transform(text, text.begin(),
@@ -56,7 +49,7 @@ std::size_t number_of(const std::string& wanted, const std::string& source, cons
 
 /// Numbers change when a device disappears.
 std::size_t number_now(const std::string& name, std::size_t number) {
-  const std::vector<Listed> all = listed();
+  const std::vector<Listed> all = vulkan_devices(vulkan_library());
   if (number < all.size() && all[number].name == name) return number;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].name == name) return i;
@@ -76,7 +69,7 @@ using namespace cairn::device;
 
 std::vector<Listed>* cairn_list_devices() {
   try {
-    return std::make_unique<std::vector<Listed>>(listed()).release();
+    return std::make_unique<std::vector<Listed>>(vulkan_devices(vulkan_library())).release();
   } catch (const std::runtime_error& failed) {
     throw cairn::Error(std::string("devices: ") + failed.what());
   }
@@ -85,7 +78,7 @@ std::vector<Listed>* cairn_list_devices() {
 cairn::MatchDevice* cairn_open_device(const std::string& wanted, const std::string& source,
                                       const Notice& notice) {
   try {
-    const std::vector<Listed> all = listed();
+    const std::vector<Listed> all = vulkan_devices(vulkan_library());
     const bool is_auto = wanted == "auto";
     const std::optional<std::size_t> number = is_auto ? first_by_itself(all) : number_of(wanted, source, all);
     if (!number) return nullptr;

@@ -2,12 +2,25 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#define VK_NO_PROTOTYPES
+#include <vulkan/vulkan_core.h>
+
+#include <cairn/device/device.hpp>
 #include <cairn/device/engine.hpp>
-#include <cairn/device/vulkan/vulkan.hpp>
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 namespace cairn::device {
+
+/// Looks up Vulkan's functions. Tests pass one of their own, whose functions fail.
+using FindFunction = PFN_vkGetInstanceProcAddr;
+
+/// Of libvulkan.so.1, which stays loaded. Throws Unfit if there is none.
+FindFunction vulkan_library();
+
+/// All devices, in Vulkan's order. Throws Unfit if there is no driver.
+std::vector<Listed> vulkan_devices(FindFunction find);
 
 /// What changes no result of the kernels.
 struct Tuning {
