@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "app.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cairn/core/nearest.hpp>
 #include <string>

@@ -2,10 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <functional>
 #include <string_view>
+
+namespace CLI {
+class App;
+}
 
 namespace cairn::cli {
 

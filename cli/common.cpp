@@ -3,6 +3,7 @@
 #include "common.hpp"
 
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cairn/core/error.hpp>

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/stereo_pair.hpp>
 #include <cairn/io/dataset.hpp>
@@ -16,6 +15,10 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace cairn::cli {
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "follow_options.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cairn/core/error.hpp>
 #include <cmath>
 #include <cstdio>

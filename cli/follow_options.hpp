@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cairn/live/sequence_run.hpp>
 #include <cairn/sequence/follow_config.hpp>
 #include <optional>
@@ -10,6 +9,10 @@
 #include <vector>
 
 #include "common.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace cairn::cli {
 

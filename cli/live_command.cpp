@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <CLI/CLI.hpp>
 #include <cairn/core/error.hpp>
 #include <cairn/live/looped.hpp>
 #include <cairn/live/runner.hpp>

@@ -4,6 +4,7 @@
 
 #include <sys/mman.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <cairn/core/error.hpp>
 #include <cairn/ros/mcap.hpp>

@@ -2,12 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cairn/live/recorder.hpp>
 #include <memory>
 #include <string>
 
 #include "common.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace cairn::cli {
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "live_ros2.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cairn/core/error.hpp>
 #include <cairn/live/ros2.hpp>
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "live_view.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cairn/core/error.hpp>
 #include <cairn/live/view/view_server.hpp>
 #include <cairn/ros/mcap.hpp>

@@ -2,13 +2,16 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cairn/live/live_frame.hpp>
 #include <cairn/live/recorder.hpp>
 #include <cairn/live/runner.hpp>
 #include <cairn/live/view/view_options.hpp>
 #include <memory>
 #include <string>
+
+namespace CLI {
+class App;
+}
 
 namespace cairn::cli {
 

@@ -5,6 +5,7 @@
 // are a module, because its libraries (OpenCV with LAPACK, SQLite, OpenSSL) take longer to load than a pair to segment.
 #include <fcntl.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <cairn/core/error.hpp>
 #include <cairn/io/load_module.hpp>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <CLI/CLI.hpp>
+
 #include "commands.hpp"
 #include "map_work.hpp"
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // Replaces the sequence commands in a build without their dependencies.
+#include <CLI/CLI.hpp>
 #include <cairn/core/error.hpp>
 
 #include "batch_frames.hpp"

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "run_files.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/input/camera/without_password.hpp>

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cairn/live/runner.hpp>
 #include <cairn/live/topics.hpp>
 #include <cairn/output/follow_files.hpp>
@@ -12,6 +11,10 @@
 #include <set>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace cairn::cli {
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include "run_sinks.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cairn/live/queued_sink.hpp>
 #include <iostream>
 

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +14,10 @@
 #include "live_view.hpp"
 #include "run_files.hpp"
 #include "source_options.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace cairn::cli {
 

@@ -2,11 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cairn/input/sequence.hpp>
 #include <string>
 
 #include "common.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace cairn::cli {
 

@@ -103,28 +103,30 @@ float cost_of(std::uint32_t sum) {
 
 /// From what right.comp writes, four words for each pixel, to row y of the maps.
 void unpack_row(const std::uint32_t* all, const Search& search, int y, Matches& out) {
-  const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(search.width);
+  const int width = search.width;
+  const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
   const std::uint32_t* const at = all + 4 * first;
-  const std::uint32_t* const right = all + 4 * static_cast<std::size_t>(search.pixels()) + first;
-  for (int x = 0; x < search.width; ++x) {
-    out.best.row(y)[x] = static_cast<std::int16_t>(static_cast<std::uint16_t>(at[4 * x] & 0xFFFFU));
-    out.cost.row(y)[x] = cost_of(at[4 * x] >> 16U);
-  }
+  const auto unpack = [&](auto& map, const auto& value) {
+    auto* const to = map.row(y);
+    for (int x = 0; x < width; ++x) to[x] = value(x);
+  };
+  unpack(out.best, [&](int x) { return static_cast<std::int16_t>(static_cast<std::uint16_t>(at[4 * x])); });
+  unpack(out.cost, [&](int x) { return cost_of(at[4 * x] >> 16U); });
   if (out.runner_up.empty()) return;
-  for (int x = 0; x < search.width; ++x) {
-    out.cost_before.row(y)[x] = cost_of(at[4 * x + 1] & 0xFFFFU);
-    out.cost_after.row(y)[x] = cost_of(at[4 * x + 1] >> 16U);
-    out.runner_up.row(y)[x] = cost_of(at[4 * x + 2]);
-  }
+  unpack(out.cost_before, [&](int x) { return cost_of(at[4 * x + 1] & 0xFFFFU); });
+  unpack(out.cost_after, [&](int x) { return cost_of(at[4 * x + 1] >> 16U); });
+  unpack(out.runner_up, [&](int x) { return cost_of(at[4 * x + 2]); });
   if (out.best_right.empty()) return;
+  const std::uint32_t* const right = all + 4 * static_cast<std::size_t>(search.pixels()) + first;
+  unpack(out.best_right,
+         [&](int x) { return static_cast<std::int16_t>(static_cast<std::int32_t>(right[x])); });
   // The quotient is the processor's: on a device it may be off by 2.5 units in the last place.
-  const SearchLayout layout{search.width, search.height, search.first_d, search.count, search.count};
-  for (int x = 0; x < search.width; ++x) {
-    out.best_right.row(y)[x] = static_cast<std::int16_t>(static_cast<std::int32_t>(right[x]));
+  const SearchLayout layout{width, search.height, search.first_d, search.count, search.count};
+  unpack(out.mean_cost, [&](int x) {
     const int candidates = layout.end(x) - layout.begin(x);
     const float mean = static_cast<float>(at[4 * x + 3]) / static_cast<float>(std::max(1, candidates));
-    out.mean_cost.row(y)[x] = candidates > 0 ? mean : kNoCost;
-  }
+    return candidates > 0 ? mean : kNoCost;
+  });
 }
 
 class VulkanEngine final : public Engine {
