@@ -273,7 +273,7 @@ std::string summary(const Findings& found) {
          std::to_string(times.later_allocations) + " in later ones\n";
 }
 
-/// What the device did, in the mean of its pairs.
+/// What the device did, in the mean of its pairs. Bytes are counted as if nothing were cached.
 std::string device_table(const Exec& exec) {
   if (!exec.device) return {};
   const DeviceReport report = exec.device->report();
@@ -281,10 +281,13 @@ std::string device_table(const Exec& exec) {
                         text_of("%.1f MB", 1e-6 * static_cast<double>(report.memory_bytes));
   if (!report.reason.empty())
     heading += "; " + std::to_string(report.on_processor) + " on the processor: " + report.reason;
-  Table table({"kernel", "ms a pair"});
-  for (const auto& [kernel, sum] : report.kernels_ms)
-    table.add(
-        {kernel, text_of("%.3f", sum / static_cast<double>(std::max<std::int64_t>(1, report.on_device)))});
+  Table table({"kernel", "ms a pair", "MB", "dispatches"});
+  const auto pairs = static_cast<double>(std::max<std::int64_t>(1, report.on_device));
+  for (const DeviceKernel& one : report.kernels) {
+    table.add({one.name, text_of("%.3f", one.ms / pairs),
+               text_of("%.1f", 1e-6 * static_cast<double>(one.bytes) / pairs),
+               text_of("%.0f", static_cast<double>(one.dispatches) / pairs)});
+  }
   return "\n" + heading + "\n" + (report.on_device > 0 ? table.text() : "");
 }
 

@@ -274,10 +274,10 @@ Matches CarefulDevice::on_device(const StereoPair& pair, const MatchConfig& conf
                                  const SemiGlobalConfig& penalties, const Exec& exec) {
   const auto is_this = [&](const Task& task) { return task.equals(pair, config, penalties); };
   std::optional<Matches> found;
-  KernelTimes times;
+  std::vector<DeviceKernel> work;
   if (done_ && is_this(done_->task)) {
     found = std::move(done_->matches);
-    times = std::move(done_->times);
+    work = std::move(done_->work);
     done_.reset();
   }
   if (!found && submitted_ && !is_this(*submitted_)) {
@@ -285,7 +285,7 @@ Matches CarefulDevice::on_device(const StereoPair& pair, const MatchConfig& conf
     Task task = *std::exchange(submitted_, std::nullopt);
     done_.reset();
     Matches matches = engine_->finish(exec);
-    done_.emplace(std::move(task), std::move(matches), engine_->times());
+    done_.emplace(std::move(task), std::move(matches), engine_->work());
   }
   if (!found) {
     if (!std::exchange(submitted_, std::nullopt)) {
@@ -293,9 +293,9 @@ Matches CarefulDevice::on_device(const StereoPair& pair, const MatchConfig& conf
       engine_->submit(pair, config, penalties);
     }
     found = engine_->finish(exec);
-    times = engine_->times();
+    work = engine_->work();
   }
-  count(true, times);
+  count(true, work);
   return std::move(*found);
 }
 
@@ -333,13 +333,16 @@ void CarefulDevice::give_up(const std::string& why) {
   notify(why + "; it is not used any more");
 }
 
-void CarefulDevice::count(bool on_device, const KernelTimes& times) {
+void CarefulDevice::count(bool on_device, const std::vector<DeviceKernel>& work) {
   const std::lock_guard lock(report_mutex_);
   ++(on_device ? report_.on_device : report_.on_processor);
-  report_.kernels_ms.resize(std::max(report_.kernels_ms.size(), times.size()));
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    report_.kernels_ms[i].first = times[i].first;
-    report_.kernels_ms[i].second += times[i].second;
+  report_.kernels.resize(std::max(report_.kernels.size(), work.size()));
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    DeviceKernel& sum = report_.kernels[i];
+    sum.name = work[i].name;
+    sum.ms += work[i].ms;
+    sum.bytes += work[i].bytes;
+    sum.dispatches += work[i].dispatches;
   }
   if (on_device && engine_) report_.memory_bytes = engine_->memory_bytes();
 }

@@ -58,7 +58,7 @@ class CarefulDevice final : public MatchDevice {
   struct Done {
     Task task;
     Matches matches;
-    KernelTimes times;
+    std::vector<DeviceKernel> work;
   };
   /// Wall times of the first pairs, which device and processor compute in turn.
   struct Race {
@@ -85,7 +85,7 @@ class CarefulDevice final : public MatchDevice {
   void lose(const Lost& lost);
   void give_up(const std::string& why);
 
-  void count(bool on_device, const KernelTimes& times = {});
+  void count(bool on_device, const std::vector<DeviceKernel>& work = {});
   void notify(const std::string& says);
   void tell();
 

@@ -5,6 +5,7 @@
 #include <cairn/stereo/match_device.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace cairn::device {
 
@@ -17,9 +18,6 @@ struct Lost : std::runtime_error {
   explicit Lost(const std::string& says, bool busy = false) : std::runtime_error(says), is_busy(busy) {}
   bool is_busy;  // it may still be at work, so it must not be destroyed either
 };
-
-/// Time of each kernel of a pair, in ms; zeros from devices without clocks.
-using KernelTimes = decltype(DeviceReport::kernels_ms);
 
 /// Does the work of a MatchDevice, one pair at a time.
 class Engine {
@@ -41,7 +39,7 @@ class Engine {
   /// Waits for the pair. Throws Lost, and std::bad_alloc before it waits.
   virtual Matches finish(const Exec& exec) = 0;
   /// Of the last pair that was finished.
-  [[nodiscard]] virtual KernelTimes times() const = 0;
+  [[nodiscard]] virtual std::vector<DeviceKernel> work() const = 0;
   [[nodiscard]] virtual std::int64_t memory_bytes() const = 0;
 };
 

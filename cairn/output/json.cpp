@@ -47,13 +47,14 @@ Json shortest(float value) {
 
 Json json_of(const DeviceReport& report) {
   Json kernels = Json::object();
-  for (const auto& [kernel, ms] : report.kernels_ms) kernels[kernel] = rounded(ms);
+  for (const DeviceKernel& one : report.kernels)
+    kernels[one.name] = {{"ms", rounded(one.ms)}, {"bytes", one.bytes}, {"dispatches", one.dispatches}};
   return {{"wanted", report.wanted},
           {"name", report.name},
           {"on_device", report.on_device},
           {"on_processor", report.on_processor},
           {"reason", report.reason},
-          {"kernels_ms", kernels},
+          {"kernels", kernels},
           {"memory_bytes", report.memory_bytes}};
 }
 

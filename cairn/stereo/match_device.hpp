@@ -9,20 +9,28 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace cairn {
 
+/// The work of one of a device's kernels.
+struct DeviceKernel {
+  std::string name;
+  double ms = 0;           // 0: the device has no clock
+  std::int64_t bytes = 0;  // read and written, as if nothing were cached
+  std::int64_t dispatches = 0;
+  friend bool operator==(const DeviceKernel&, const DeviceKernel&) = default;
+};
+
 /// What a device has done so far.
 struct DeviceReport {
-  std::string wanted;                                      // as the user asked for it: a name, a number, auto
-  std::string name;                                        // empty until it is open
-  std::int64_t on_device = 0;                              // pairs
-  std::int64_t on_processor = 0;                           // pairs that the device left to the processor
-  std::vector<std::pair<std::string, double>> kernels_ms;  // the time of each, all pairs together
-  std::int64_t memory_bytes = 0;                           // of the device
-  std::string reason;  // why it left any to the processor; empty if it did not
+  std::string wanted;                 // as the user asked for it: a name, a number, auto
+  std::string name;                   // empty until it is open
+  std::int64_t on_device = 0;         // pairs
+  std::int64_t on_processor = 0;      // pairs that the device left to the processor
+  std::vector<DeviceKernel> kernels;  // of all these pairs together
+  std::int64_t memory_bytes = 0;      // of the device
+  std::string reason;                 // why it left any to the processor; empty if it did not
 };
 
 /// Computes match() elsewhere, on a graphics processor, with the same bits. Thread-safe.

@@ -143,7 +143,7 @@ class VulkanEngine final : public Engine {
   }
   void submit(const StereoPair& pair, const MatchConfig& config, const SemiGlobalConfig& penalties) override;
   Matches finish(const Exec& exec) override;
-  [[nodiscard]] KernelTimes times() const override { return times_; }
+  [[nodiscard]] std::vector<DeviceKernel> work() const override { return work_; }
   [[nodiscard]] std::int64_t memory_bytes() const override;
 
  private:
@@ -178,7 +178,7 @@ class VulkanEngine final : public Engine {
   MatchMaps maps_ = MatchMaps::full;  // of the pair at work
   bool is_at_work_ = false;
   bool is_first_ = true;  // pair of this program
-  KernelTimes times_;
+  std::vector<DeviceKernel> work_;
 
   [[nodiscard]] std::uint64_t patience() const {
     if (traits_.listed.kind == kSoftware) return kPatienceInSoftware;
@@ -452,16 +452,23 @@ Matches VulkanEngine::finish(const Exec& exec) {
 }
 
 void VulkanEngine::read_clock() {
-  times_.clear();
-  for (const char* const name : kKernelNames) times_.emplace_back(name, 0);
+  const Search& search = program_->search;
+  const std::int64_t pixels = search.pixels(), volume = 4 * pixels * program_->team.all_words();
+  const std::int64_t images = std::int64_t{8} * search.row_words * search.height;
+  work_ = {{"describe", 0, images + 12 * pixels, 1},
+           {"down", 0, 2 * volume, 1},
+           {"up", 0, 3 * volume, 1},
+           {"left", 0, 2 * volume, 1},
+           {"right", 0, 3 * volume + 20 * pixels, 1}};
   if (traits_.clock_mask == 0) return;
   const auto [result, ticks] =
       clock_.getResults<std::uint64_t>(0, kKernels + 1, (kKernels + 1) * sizeof(std::uint64_t),
                                        sizeof(std::uint64_t), vk::QueryResultFlagBits::e64);
   if (result != vk::Result::eSuccess) return;
-  for (std::size_t i = 0; i < kKernels; ++i)
-    times_[i].second =
+  for (std::size_t i = 0; i < kKernels; ++i) {
+    work_[i].ms =
         static_cast<double>((ticks[i + 1] - ticks[i]) & traits_.clock_mask) * traits_.ns_per_tick * 1e-6;
+  }
 }
 
 }  // namespace

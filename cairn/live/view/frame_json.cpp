@@ -317,7 +317,7 @@ const std::string_view kStatsSchema = R"({
       "forward": {"type": "array", "items": {"type": "number"}},
       "left": {"type": "array", "items": {"type": "number"}}}},
     "device": {"type": "object", "properties": {"wanted": {"type": "string"}, "name": {"type": "string"}, "on_device": {"type": "integer"},
-      "on_processor": {"type": "integer"}, "reason": {"type": "string"}, "kernels_ms": {"type": "object"},
+      "on_processor": {"type": "integer"}, "reason": {"type": "string"}, "kernels": {"type": "object"},
       "memory_bytes": {"type": "integer"}}},
     "tunable": {"type": "boolean"}, "can_record": {"type": "boolean"}, "recording": {"type": "boolean"},
     "is_file": {"type": "boolean"}, "paused": {"type": "boolean"},

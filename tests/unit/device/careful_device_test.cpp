@@ -52,7 +52,7 @@ class FakeEngine final : public Engine {
     if (fault_ == Fault::hangs) throw Lost("fake has not answered", true);
     return std::move(found_);
   }
-  [[nodiscard]] KernelTimes times() const override { return {{"all", 2}}; }
+  [[nodiscard]] std::vector<DeviceKernel> work() const override { return {{"all", 2, 100, 1}}; }
   [[nodiscard]] std::int64_t memory_bytes() const override { return 9; }
 
  private:
@@ -97,7 +97,7 @@ TEST_F(CarefulDeviceTest, MatchesOnTheDevice) {
   EXPECT_EQ(report.name, "fake");
   EXPECT_EQ(report.on_device, 3);
   EXPECT_EQ(report.on_processor, 0);
-  EXPECT_EQ(report.kernels_ms, (KernelTimes{{"all", 6}}));
+  EXPECT_EQ(report.kernels, (std::vector<DeviceKernel>{{"all", 6, 300, 3}}));
   EXPECT_EQ(report.memory_bytes, 9);
   EXPECT_EQ(submitted, 4) << "the self-test, and once each";
   EXPECT_TRUE(notices.empty());
