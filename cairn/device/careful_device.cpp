@@ -285,7 +285,7 @@ Matches CarefulDevice::on_device(const StereoPair& pair, const MatchConfig& conf
     Task task = *std::exchange(submitted_, std::nullopt);
     done_.reset();
     Matches matches = engine_->finish(exec);
-    done_.emplace(std::move(task), std::move(matches), engine_->work());
+    done_ = Done{std::move(task), std::move(matches), engine_->work()};
   }
   if (!found) {
     if (!std::exchange(submitted_, std::nullopt)) {

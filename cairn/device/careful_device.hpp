@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cairn/core/pair_copy.hpp>
 #include <cairn/device/device.hpp>
 #include <cairn/device/engine.hpp>
 #include <chrono>
-#include <compare>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -65,13 +65,8 @@ class CarefulDevice final : public MatchDevice {
     std::vector<double> device_ms;
     std::vector<double> processor_ms;
   };
-  /// What an engine can refuse.
-  struct Search {
-    int width;
-    int height;
-    int num_disparities;
-    friend auto operator<=>(const Search&, const Search&) = default;
-  };
+  /// What an engine can refuse: width, height, number of disparities.
+  using Search = std::array<int, 3>;
   static Search search_of(const StereoPair& pair, const MatchConfig& config);
 
   // Under engine_mutex_:

@@ -19,7 +19,8 @@ std::vector<Listed> devices() {
   return *listed;
 }
 
-std::shared_ptr<MatchDevice> open(const std::string& wanted, const std::string& source, Notice notice) {
+std::shared_ptr<MatchDevice> open(const std::string& wanted, const std::string& source,
+                                  const Notice& notice) {
   if (wanted.empty() || wanted == "off") return nullptr;
   try {
     const auto entry = CAIRN_ENTRY(CAIRN_HOW_VULKAN, cairn_open_device, kVulkan, source + " " + wanted);

@@ -35,6 +35,7 @@ using Notice = std::function<void(const std::string&)>;
 /// the processor computes, or not faster, and null if there is none; the number of a device; or a part of its name. With
 /// "auto", the device is prepared while the processor computes the first frames. Throws Error, beginning with `source`, if
 /// a device that is named is not there or cannot be used. `notice` may be called from any thread.
-std::shared_ptr<MatchDevice> open(const std::string& wanted, const std::string& source, Notice notice = {});
+std::shared_ptr<MatchDevice> open(const std::string& wanted, const std::string& source,
+                                  const Notice& notice = {});
 
 }  // namespace cairn::device

@@ -40,7 +40,6 @@ struct Search {
 struct Team {
   std::uint32_t lanes;  // a power of two
   int words;            // of each lane
-  friend auto operator<=>(const Team&, const Team&) = default;
   [[nodiscard]] std::uint32_t all_words() const { return lanes * static_cast<std::uint32_t>(words); }
 };
 
@@ -54,9 +53,10 @@ Team team_for(int count, std::uint32_t most_lanes) {
       if (team.all_words() >= words_needed && (!best || team.all_words() < best->all_words())) best = team;
     }
   }
-  if (!best)
+  if (!best) {
     throw Unfit(std::to_string(count) + " disparities are more than a group of " +
                 std::to_string(most_lanes) + " can share");
+  }
   return *best;
 }
 
@@ -173,7 +173,7 @@ class VulkanEngine final : public Engine {
   vk::raii::CommandPool commands_;
   vk::raii::QueryPool clock_{nullptr};
   vk::raii::Fence fence_;
-  std::map<Team, Pipelines> pipelines_;
+  std::map<std::pair<std::uint32_t, int>, Pipelines> pipelines_;  // by lanes and words
   std::optional<Program> program_;
   MatchMaps maps_ = MatchMaps::full;  // of the pair at work
   bool is_at_work_ = false;
@@ -231,9 +231,10 @@ VulkanEngine::VulkanEngine(FindFunction find, std::size_t number, Tuning tuning)
       layout_(made_layout(device_, *set_layout_)),
       commands_(device_, vk::CommandPoolCreateInfo({}, traits_.queue_family)),
       fence_(device_, vk::FenceCreateInfo()) {
-  if (traits_.clock_mask != 0)
+  if (traits_.clock_mask != 0) {
     clock_ =
         vk::raii::QueryPool(device_, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, kKernels + 1));
+  }
 }
 
 VulkanEngine::~VulkanEngine() {
@@ -323,7 +324,7 @@ vk::raii::Pipeline VulkanEngine::made_pipeline(Kernel kernel, const Team& team) 
 }
 
 const Pipelines& VulkanEngine::pipelines_for(const Team& team) {
-  Pipelines& all = pipelines_[team];
+  Pipelines& all = pipelines_[{team.lanes, team.words}];
   for (std::size_t i = all.size(); i < kKernels; ++i)
     all.push_back(made_pipeline(static_cast<Kernel>(i), team));
   return all;
