@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cairn/core/random.hpp>
+#include <cairn/core/statistics.hpp>
 #include <cairn/device/careful_device.hpp>
 #include <cstddef>
 #include <utility>
@@ -82,12 +83,6 @@ std::unique_ptr<Engine> tested(std::unique_ptr<Engine> engine) {
   return engine;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::string in_ms(double ms) {
   const auto tenths = static_cast<long>(10 * ms + 0.5);
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " ms";
@@ -136,10 +131,7 @@ CarefulDevice::CarefulDevice(Open open, Trust trust, Notice notice, std::string 
     start_opening();
     return;
   }
-  engine_ = tested(open_());
-  trusted_ = {engine_->variant(MatchConfig{}.num_disparities)};
-  report_.name = engine_->name();
-  is_taking_ = true;
+  take(tested(open_()));
 }
 
 CarefulDevice::~CarefulDevice() {
@@ -173,39 +165,42 @@ void CarefulDevice::begin(const StereoPair& pair, const MatchConfig& config,
 std::optional<Matches> CarefulDevice::match(const StereoPair& pair, const MatchConfig& config,
                                             const SemiGlobalConfig& penalties, const Exec& exec) {
   std::optional<Matches> found;
-  if (config.method != MatchMethod::semi_global) {
-    notify("devices match semi-globally, not by windows (match.method=window)");
+  if (config.method == MatchMethod::semi_global) {
+    found = match_or_leave(pair, config, penalties, exec);
   } else {
-    std::unique_lock engine_lock(engine_mutex_);
-    const bool is_ready_now = is_ready() && !unfit_.contains(search_of(pair, config));
-    if (is_ready_now && race_ && race_->device_ms.size() > race_->processor_ms.size()) {
-      engine_lock.unlock();
-      const double ms = wall_ms([&] { found = match_semi_global(pair, config, penalties, exec); });
-      engine_lock.lock();
-      count(false);
-      if (race_) race_->processor_ms.push_back(ms);
-      decide_race();
-      engine_lock.unlock();
-      tell();
-      return found;
-    }
-    if (is_ready_now) {
-      try {
-        const double ms = wall_ms([&] { found = on_device(pair, config, penalties, exec); });
-        if (race_) race_->device_ms.push_back(ms);
-      } catch (const Wrong& wrong) {
-        give_up(wrong.what());
-      } catch (const Unfit& unfit) {
-        unfit_.insert(search_of(pair, config));
-        notify(unfit.what());
-      } catch (const Lost& lost) {
-        lose(lost);
-      }
-      submit_waiting();
-    }
+    notify("devices match semi-globally, not by windows (match.method=window)");
   }
   if (!found) count(false);
   tell();
+  return found;
+}
+
+std::optional<Matches> CarefulDevice::match_or_leave(const StereoPair& pair, const MatchConfig& config,
+                                                     const SemiGlobalConfig& penalties, const Exec& exec) {
+  std::optional<Matches> found;
+  std::unique_lock engine_lock(engine_mutex_);
+  if (!is_ready() || unfit_.contains(search_of(pair, config))) return found;
+  if (race_ && race_->device_ms.size() > race_->processor_ms.size()) {
+    engine_lock.unlock();
+    const double ms = wall_ms([&] { found = match_semi_global(pair, config, penalties, exec); });
+    engine_lock.lock();
+    count(false);
+    if (race_) race_->processor_ms.push_back(ms);
+    decide_race();
+    return found;
+  }
+  try {
+    const double ms = wall_ms([&] { found = on_device(pair, config, penalties, exec); });
+    if (race_) race_->device_ms.push_back(ms);
+  } catch (const Wrong& wrong) {
+    give_up(wrong.what());
+  } catch (const Unfit& unfit) {
+    unfit_.insert(search_of(pair, config));
+    notify(unfit.what());
+  } catch (const Lost& lost) {
+    lose(lost);
+  }
+  submit_waiting();
   return found;
 }
 
@@ -218,6 +213,15 @@ void CarefulDevice::start_opening() {
   opening_ = std::async(std::launch::async, [this] { return tested(open_()); });
 }
 
+void CarefulDevice::take(std::unique_ptr<Engine> tested) {
+  engine_ = std::move(tested);
+  trusted_ = {engine_->variant(MatchConfig{}.num_disparities)};
+  unfit_.clear();
+  is_taking_ = !race_;
+  const std::lock_guard lock(report_mutex_);
+  report_.name = engine_->name();
+}
+
 /// Takes the engine that was opened beside the frames, and begins to open a lost one again.
 bool CarefulDevice::is_ready() {
   using namespace std::chrono_literals;
@@ -226,12 +230,7 @@ bool CarefulDevice::is_ready() {
   if (!opening_.valid() && Clock::now() >= lost_at_ + trust_.reopen_after) start_opening();
   if (!opening_.valid() || opening_.wait_for(0s) != std::future_status::ready) return false;
   try {
-    engine_ = opening_.get();
-    trusted_ = {engine_->variant(MatchConfig{}.num_disparities)};
-    unfit_.clear();
-    is_taking_ = !race_;
-    const std::lock_guard lock(report_mutex_);
-    report_.name = engine_->name();
+    take(opening_.get());
   } catch (const Lost& lost) {
     lose(lost);
   } catch (const std::runtime_error& failed) {
@@ -301,7 +300,8 @@ Matches CarefulDevice::on_device(const StereoPair& pair, const MatchConfig& conf
 
 void CarefulDevice::decide_race() {
   if (!race_ || race_->processor_ms.size() < kRacePairs) return;
-  const double device_ms = median(race_->device_ms), processor_ms = median(race_->processor_ms);
+  const double device_ms = percentile(race_->device_ms, 0.5),
+               processor_ms = percentile(race_->processor_ms, 0.5);
   race_.reset();
   is_taking_ = engine_ != nullptr;
   if (engine_ && device_ms >= processor_ms) {

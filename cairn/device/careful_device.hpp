@@ -69,8 +69,12 @@ class CarefulDevice final : public MatchDevice {
   using Search = std::array<int, 3>;
   static Search search_of(const StereoPair& pair, const MatchConfig& config);
 
+  std::optional<Matches> match_or_leave(const StereoPair& pair, const MatchConfig& config,
+                                        const SemiGlobalConfig& penalties, const Exec& exec);
+
   // Under engine_mutex_:
   bool is_ready();
+  void take(std::unique_ptr<Engine> tested);
   void start_opening();
   void be_sure_of(const MatchConfig& config);
   void submit_waiting();

@@ -119,8 +119,8 @@ class Runner {
   ReadPair read_next();
   PairPtr newest(NewestSlot<PairPtr>& slot);
   bool begins_early(input::SequenceFrame& pair);
-  /// Begins a pair while the frame before it is at work.
   [[nodiscard]] bool overlaps_frames() const;
+  /// Begins a pair while the frame before it is at work.
   void prefetch(const input::SequenceFrame& pair);
   TrackedFrame step_of(const input::SequenceFrame& pair);
   std::shared_ptr<LiveFrame> work(PairPtr pair, const input::SourceStatus& status);

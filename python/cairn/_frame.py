@@ -189,7 +189,8 @@ class Segmenter:
     def prefetch(self, left: ImageLike, right: ImageLike, *, bgr: bool = False) -> None:
         """Begins the frame of the pair after the next one, in the background: call it before segment() of the next pair.
         Two threads (Exec(threads=2)) then do almost twice the frames of one. The images are copied; segment() finds by
-        their pixels what was begun, and returns the same frame without this call. With one thread, only the matches of a device are begun."""
+        their pixels what was begun, and returns the same frame without this call. With one thread, only the matches of a
+        device are begun."""
         self._data.prefetch(left, right)
 
 

@@ -16,8 +16,8 @@ foreach(kernel describe down up left right)
       if(VALIDATOR)
         execute_process(COMMAND ${VALIDATOR} --target-env vulkan1.1 ${OUT}.spv COMMAND_ERROR_IS_FATAL ANY)
       endif()
-      execute_process(COMMAND ${GLSLC} ${flags} -mfmt=num -o - ${FOLDER}/${kernel}.comp
-        OUTPUT_VARIABLE code COMMAND_ERROR_IS_FATAL ANY)
+      file(READ ${OUT}.spv code HEX)
+      string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," code ${code})  # words, little-endian
       string(APPEND source "constexpr std::uint32_t k_${kernel}_${words}_${shuffles}[] = {${code}};\n")
       string(APPEND table "  if (kernel == Kernel::${kernel} && (kernel == Kernel::describe || (words == ${words} && shuffles == (${shuffles} != 0)))) return k_${kernel}_${words}_${shuffles};\n")
     endforeach()

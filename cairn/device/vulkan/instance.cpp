@@ -126,7 +126,10 @@ Instance::Instance(FindFunction find)
 
 std::vector<Traits> Instance::traits() const {
   std::vector<Traits> all;
-  for (const auto& device : devices_) all.push_back(traits_of(device));
+  for (const auto& device : devices_) {
+    all.push_back(traits_of(device));
+    all.back().number = all.size() - 1;
+  }
   return all;
 }
 

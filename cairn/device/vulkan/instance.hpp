@@ -16,6 +16,7 @@ inline constexpr std::uint32_t kStorageBuffers = 6;
 
 /// What a device offers to the kernels.
 struct Traits {
+  std::size_t number = 0;  // among all devices
   Listed listed;
   std::uint32_t queue_family = 0;
   std::uint64_t clock_mask = 0;  // of its ticks; 0: it has no clock

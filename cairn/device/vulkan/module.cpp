@@ -5,8 +5,8 @@
 #include <cairn/device/careful_device.hpp>
 #include <cairn/device/module.hpp>
 #include <cairn/device/vulkan/vulkan_engine.hpp>
+#include <cairn/io/names_and_numbers.hpp>
 #include <cctype>
-#include <charconv>
 
 namespace cairn::device {
 namespace {
@@ -15,13 +15,6 @@ std::string in_lower_case(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
-}
-
-std::optional<std::size_t> number_in(const std::string& wanted) {
-  std::size_t number = 0;
-  const char* const end = wanted.data() + wanted.size();
-  const auto read = std::from_chars(wanted.data(), end, number);
-  return read.ec == std::errc() && read.ptr == end ? std::optional(number) : std::nullopt;
 }
 
 std::string names_of(const std::vector<Listed>& all) {
@@ -33,7 +26,7 @@ std::string names_of(const std::vector<Listed>& all) {
 
 /// By its number, else by a part of its name. Throws Error.
 std::size_t number_of(const std::string& wanted, const std::string& source, const std::vector<Listed>& all) {
-  std::optional<std::size_t> found = number_in(wanted);
+  auto found = io::whole<std::size_t>(wanted);
   if (found && *found >= all.size()) found.reset();  // "4090"
   for (std::size_t i = 0; i < all.size() && !found; ++i)
     if (in_lower_case(all[i].name).find(in_lower_case(wanted)) != std::string::npos) found = i;
@@ -45,15 +38,6 @@ std::size_t number_of(const std::string& wanted, const std::string& source, cons
   if (!all[*found].unusable.empty())
     throw Error(source + " " + wanted + ": " + all[*found].name + ": " + all[*found].unusable);
   return *found;
-}
-
-/// Numbers change when a device disappears.
-std::size_t number_now(const std::string& name, std::size_t number) {
-  const std::vector<Listed> all = vulkan_devices(vulkan_library());
-  if (number < all.size() && all[number].name == name) return number;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].name == name) return i;
-  throw Lost(name + " is not there any more");
 }
 
 std::optional<std::size_t> first_by_itself(const std::vector<Listed>& all) {
@@ -82,8 +66,8 @@ cairn::MatchDevice* cairn_open_device(const std::string& wanted, const std::stri
     const bool is_auto = wanted == "auto";
     const std::optional<std::size_t> number = is_auto ? first_by_itself(all) : number_of(wanted, source, all);
     if (!number) return nullptr;
-    const auto open = [name = all[*number].name, number = *number] {
-      return vulkan_engine(vulkan_library(), number_now(name, number));
+    const auto open = [number = *number, name = all[*number].name] {
+      return vulkan_engine(vulkan_library(), number, {}, name);
     };
     Notice with_source;
     if (notice) with_source = [notice, source](const std::string& says) { notice(source + ": " + says); };

@@ -131,7 +131,7 @@ void unpack_row(const std::uint32_t* all, const Search& search, int y, Matches& 
 
 class VulkanEngine final : public Engine {
  public:
-  VulkanEngine(FindFunction find, std::size_t number, Tuning tuning);
+  VulkanEngine(FindFunction find, std::size_t number, Tuning tuning, const std::string& name);
   ~VulkanEngine() override;
 
   [[nodiscard]] std::string name() const override { return traits_.listed.name; }
@@ -164,7 +164,6 @@ class VulkanEngine final : public Engine {
 
   Instance instance_;
   Tuning tuning_;
-  std::size_t number_;
   Traits traits_;
   vk::raii::Device device_;
   vk::raii::Queue queue_;
@@ -212,19 +211,23 @@ vk::raii::PipelineLayout made_layout(const vk::raii::Device& device, vk::Descrip
   return {device, vk::PipelineLayoutCreateInfo({}, sets, search)};
 }
 
-Traits usable_traits(const Instance& instance, std::size_t number) {
+/// Numbers change when a device disappears.
+Traits usable_traits(const Instance& instance, std::size_t number, const std::string& name) {
   const std::vector<Traits> all = instance.traits();
-  if (number >= all.size()) throw Unfit("there is no device " + std::to_string(number));
-  if (!all[number].listed.unusable.empty())
-    throw Unfit(all[number].listed.name + ": " + all[number].listed.unusable);
-  return all[number];
+  auto found = std::ranges::find(all, number, &Traits::number);
+  if (!name.empty() && (found == all.end() || found->listed.name != name)) {
+    found = std::ranges::find_if(all, [&](const Traits& one) { return one.listed.name == name; });
+    if (found == all.end()) throw Lost(name + " is not there any more");
+  }
+  if (found == all.end()) throw Unfit("there is no device " + std::to_string(number));
+  if (!found->listed.unusable.empty()) throw Unfit(found->listed.name + ": " + found->listed.unusable);
+  return *found;
 }
 
-VulkanEngine::VulkanEngine(FindFunction find, std::size_t number, Tuning tuning)
+VulkanEngine::VulkanEngine(FindFunction find, std::size_t number, Tuning tuning, const std::string& name)
     : instance_(find),
       tuning_(tuning),
-      number_(number),
-      traits_(usable_traits(instance_, number)),
+      traits_(usable_traits(instance_, number, name)),
       device_(made_device()),
       queue_(device_.getQueue(traits_.queue_family, 0)),
       set_layout_(made_set_layout(device_)),
@@ -256,7 +259,7 @@ vk::raii::Device VulkanEngine::made_device() const {
     extensions.push_back(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME);
     info.setPEnabledExtensionNames(extensions).setPNext(&subgroups);
   }
-  return {instance_.devices()[number_], info};
+  return {instance_.devices()[traits_.number], info};
 }
 
 // ---- memory ----
@@ -268,7 +271,7 @@ std::uint32_t VulkanEngine::memory_type(std::uint32_t allowed, Place place) cons
   if (place == Place::device) wishes = {Flag::eDeviceLocal, {}};
   if (place == Place::upload) wishes = {readable};
   if (place == Place::download) wishes = {readable | Flag::eHostCached, readable};
-  const auto types = instance_.devices()[number_].getMemoryProperties();
+  const auto types = instance_.devices()[traits_.number].getMemoryProperties();
   for (const vk::MemoryPropertyFlags wish : wishes) {
     for (std::uint32_t i = 0; i < types.memoryTypeCount; ++i)
       if ((allowed >> i & 1U) != 0 && (types.memoryTypes[i].propertyFlags & wish) == wish) return i;
@@ -456,11 +459,10 @@ void VulkanEngine::read_clock() {
   const Search& search = program_->search;
   const std::int64_t pixels = search.pixels(), volume = 4 * pixels * program_->team.all_words();
   const std::int64_t images = std::int64_t{8} * search.row_words * search.height;
-  work_ = {{"describe", 0, images + 12 * pixels, 1},
-           {"down", 0, 2 * volume, 1},
-           {"up", 0, 3 * volume, 1},
-           {"left", 0, 2 * volume, 1},
-           {"right", 0, 3 * volume + 20 * pixels, 1}};
+  const std::array<std::int64_t, kKernels> bytes{images + 12 * pixels, 2 * volume, 3 * volume, 2 * volume,
+                                                 3 * volume + 20 * pixels};
+  work_.clear();
+  for (std::size_t i = 0; i < kKernels; ++i) work_.push_back({kKernelNames[i], 0, bytes[i], 1});
   if (traits_.clock_mask == 0) return;
   const auto [result, ticks] =
       clock_.getResults<std::uint64_t>(0, kKernels + 1, (kKernels + 1) * sizeof(std::uint64_t),
@@ -474,9 +476,10 @@ void VulkanEngine::read_clock() {
 
 }  // namespace
 
-std::unique_ptr<Engine> vulkan_engine(FindFunction find, std::size_t number, Tuning tuning) {
+std::unique_ptr<Engine> vulkan_engine(FindFunction find, std::size_t number, Tuning tuning,
+                                      const std::string& name) {
   try {
-    return std::make_unique<VulkanEngine>(find, number, tuning);
+    return std::make_unique<VulkanEngine>(find, number, tuning, name);
   } catch (const vk::SystemError& failed) {
     throw Lost(std::string("the device cannot be opened (") + failed.what() + ")");
   }

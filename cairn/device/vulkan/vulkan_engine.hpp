@@ -9,6 +9,7 @@
 #include <cairn/device/engine.hpp>
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace cairn::device {
@@ -28,8 +29,9 @@ struct Tuning {
   bool shuffles = true;      // where the device has them; else shared memory
 };
 
-/// The kernels of match_semi_global() on the device of this number. Throws Unfit if it cannot be used, Lost if it
-/// fails.
-std::unique_ptr<Engine> vulkan_engine(FindFunction find, std::size_t number, Tuning tuning = {});
+/// The kernels of match_semi_global() on the device of this number; if a name is given and another device has the number
+/// now, on one of that name. Throws Unfit if it cannot be used, Lost if it fails or is not there any more.
+std::unique_ptr<Engine> vulkan_engine(FindFunction find, std::size_t number, Tuning tuning = {},
+                                      const std::string& name = {});
 
 }  // namespace cairn::device
