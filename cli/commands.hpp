@@ -30,6 +30,7 @@ Work declare_rectify(CLI::App& app);
 Work declare_record(CLI::App& app);
 Work declare_doctor(CLI::App& app);
 Work declare_map(CLI::App& app);
+Work declare_agent(CLI::App& app);
 Work declare_odometry(CLI::App& app);
 Work declare_config(CLI::App& app);
 Work declare_info(CLI::App& app);
@@ -93,6 +94,9 @@ inline constexpr std::array kCommands{
             "cairn map export room.db --form geojson -o room.geojson\n"
             "cairn map merge room.db corridor.db -o both.db\n"
             "cairn map merge room.db corridor.db -o both.db --at corridor=4.2,-1,90\n"},
+    Command{"agent", "share one map among robots, and watch them",
+            "cairn agent map fleet.db --duration 1\n"
+            "cairn agent watch --once --wait 0.5\n"},
     Command{"config", "show the options in force, with value, unit, range and meaning",
             "cairn config --preset paper\n"
             "cairn config --changed --set objects.min_confidence=0.5 > mine.yaml\n"},

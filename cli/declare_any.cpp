@@ -23,6 +23,7 @@ Work declare_any(std::string_view command, CLI::App& app) {
                                      Declaration{"record", declare_record},
                                      Declaration{"doctor", declare_doctor},
                                      Declaration{"map", declare_map},
+                                     Declaration{"agent", declare_agent},
                                      Declaration{"odometry", declare_odometry},
                                      Declaration{"config", declare_config},
                                      Declaration{"info", declare_info},

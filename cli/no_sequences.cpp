@@ -41,6 +41,9 @@ Work declare_live(CLI::App& app) {
 Work declare_map(CLI::App& app) {
   return not_built_in(app);
 }
+Work declare_agent(CLI::App& app) {
+  return not_built_in(app);
+}
 Work declare_odometry(CLI::App& app) {
   return not_built_in(app);
 }

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cairn/live/queued_sink.hpp>
+#include <cairn/live/service_notice.hpp>
 #include <iostream>
 
 namespace cairn::cli {
@@ -42,6 +43,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   add_record_options(app, options.record);
   add_view_options(app, options.view);
   add_ros2_options(app, options.ros2);
+  add_share_options(app, options.share);
 }
 
 RunSinks::RunSinks(const RunOptions& options, live::Runner& runner, const input::Sequence& source,
@@ -65,6 +67,8 @@ RunSinks::RunSinks(const RunOptions& options, live::Runner& runner, const input:
   runner.add(*recorder_);
   add(make_view(options.view, runner, *recorder_, source, preset));
   add(make_ros2_sink(options.ros2, source));
+  add(make_share_sink(options.share, options.sensors.map, runner, source));
+  add(std::make_unique<live::ServiceNotice>());
 }
 
 void RunSinks::add(std::unique_ptr<live::Sink> sink) {

@@ -11,6 +11,7 @@
 #include "json_lines.hpp"
 #include "live_record.hpp"
 #include "live_ros2.hpp"
+#include "live_share.hpp"
 #include "live_view.hpp"
 #include "run_files.hpp"
 #include "source_options.hpp"
@@ -32,6 +33,7 @@ struct RunOptions {
   LiveRecordOptions record;
   ViewInput view;
   Ros2CommandOptions ros2;
+  ShareInput share;
 };
 void add_run_options(CLI::App& app, RunOptions& options);
 

@@ -68,6 +68,7 @@ struct LiveFrame {
   std::vector<LandmarkOfTrack> landmarks;
   std::vector<LandmarkEvent> events;
   std::optional<Pose> map_from_odom;   // nullopt if unknown
+  Covariance6 camera_covariance{};     // of the camera's pose in the map, see camera_covariance()
   std::vector<Finding> findings;       // what is wrong with the rig, as far as known
   std::vector<FindingChange> changes;  // of these, with this frame
   Clock::time_point arrived;           // of the pair
@@ -94,6 +95,12 @@ class Sink {
   Sink(const Sink&) = delete;
   Sink& operator=(const Sink&) = delete;
   virtual void offer(const LiveFramePtr& frame) = 0;
+  /// The loop is alive: called after each stage of a frame, and every 50 ms or so while it waits for a pair; by several
+  /// threads.
+  virtual void note_alive() {}
+  /// For a sink that wants the map: about once a second, and at the end of the run. `run`: see LandmarksState.
+  [[nodiscard]] virtual bool wants_map() const { return false; }
+  virtual void offer_map(const std::shared_ptr<const LandmarkMap>& /*map*/, std::int64_t /*run*/) {}
   /// The run has ended: writes what is left.
   virtual void finish() {}
   /// A line for the end: number of frames by outcome; empty for none.

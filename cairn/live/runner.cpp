@@ -14,10 +14,13 @@ using namespace std::chrono_literals;
 
 /// Interval at which a wait checks whether to give up.
 constexpr auto kNotice = 50ms;
+/// Between two maps that sinks get.
+constexpr auto kMapInterval = 1s;
 
-Exec noting_stages(Exec exec, std::vector<output::StageTime>& stages) {
-  exec.observe = [&stages](std::string_view stage, const StageResult&, double ms) {
+Exec noting_stages(Exec exec, std::vector<output::StageTime>& stages, std::function<void()> also) {
+  exec.observe = [&stages, also = std::move(also)](std::string_view stage, const StageResult&, double ms) {
     stages.push_back({std::string(stage), ms});
+    also();
   };
   if (exec.pool.bytes() == 0) exec.pool = Pool::make();
   return exec;
@@ -31,7 +34,7 @@ Runner::Runner(input::Sequence& source, const std::string& source_name, const Se
       image_size_(source.image_size()),
       has_rig_(source.rig().has_value()),
       options_(std::move(options)),
-      exec_(noting_stages(exec, stages_)),
+      exec_(noting_stages(exec, stages_, [this] { note_alive(); })),
       follow_(source, source_name, files, config, exec_),
       first_config_(std::make_shared<const FollowConfig>(std::move(config))),
       used_config_(first_config_),
@@ -70,6 +73,7 @@ LiveSummary Runner::run() {
     if (reader.joinable()) reader.join();
     has_failed_ = has_failed_ || trouble;
     was_ended_ = options_.is_ended && options_.is_ended();
+    offer_map();
     std::exception_ptr unfinished;
     for (Sink* sink : sinks_) {
       try {
@@ -84,6 +88,7 @@ LiveSummary Runner::run() {
   };
   const auto offer = [&](const LiveFramePtr& frame) {
     for (Sink* sink : sinks_) sink->offer(frame);
+    if (frame->done - map_offered_ >= kMapInterval) offer_map();
   };
   try {
     if (options_.every_frame) {
@@ -160,7 +165,10 @@ Runner::PairPtr Runner::newest(NewestSlot<PairPtr>& slot) {
     if (!pair) pair = slot.take(kNotice).value_or(nullptr);
     if (!pair && slot.is_closed()) return nullptr;
     drops_.replaced = slot.replaced();
-    if (!pair) continue;
+    if (!pair) {
+      note_alive();
+      continue;
+    }
     if (!is_young(*pair)) {
       ++drops_.too_old;
       is_after_gap_ = is_after_gap_ || pair->after_gap;
@@ -227,9 +235,26 @@ void Runner::wait_for_its_time(const input::SequenceFrame& pair) {
     // Frames are not sped up to make up for a delay.
     if (due < now) due = now;
   }
-  while (Clock::now() < due && !is_over())
+  while (Clock::now() < due && !is_over()) {
     std::this_thread::sleep_until(std::min(due, Clock::now() + kNotice));
+    if (options_.every_frame) note_alive();  // else another thread waits here
+  }
   played_ = {pair.stamp, due};
+}
+
+void Runner::note_alive() const {
+  for (Sink* sink : sinks_) sink->note_alive();
+}
+
+/// A copy, as the next frame changes the map.
+void Runner::offer_map() {
+  map_offered_ = Clock::now();
+  std::shared_ptr<const LandmarkMap> map;
+  for (Sink* sink : sinks_) {
+    if (!sink->wants_map()) continue;
+    if (!map) map = std::make_shared<const LandmarkMap>(follow_.marked().state.map);
+    sink->offer_map(map, follow_.marked().state.run);
+  }
 }
 
 TrackedFrame Runner::step_of(const input::SequenceFrame& pair) {
@@ -254,6 +279,7 @@ std::shared_ptr<LiveFrame> Runner::work(PairPtr pair, const input::SourceStatus&
   frame->landmarks = follow_.marked().tracks;
   frame->events = follow_.marked().events;
   frame->map_from_odom = follow_.marked().state.map_from_odom();
+  frame->camera_covariance = camera_covariance(follow_.marked().state.located, frame->step.pose_covariance);
   take_over(frame->step.control);
   judge(*frame, *pair);
   ++frames_;

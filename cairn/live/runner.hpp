@@ -81,6 +81,8 @@ class Runner {
   [[nodiscard]] bool was_ended() const { return was_ended_; }
   /// The landmarks after the last frame; by the thread of run().
   [[nodiscard]] const LandmarkUpdate& marked() const { return follow_.marked(); }
+  /// See SequenceRun::map_id().
+  [[nodiscard]] const std::string& map_id() const { return follow_.map_id(); }
   /// See SequenceRun::assumptions().
   [[nodiscard]] std::vector<std::string> assumptions() const { return follow_.assumptions(); }
 
@@ -124,6 +126,8 @@ class Runner {
   void prefetch(const input::SequenceFrame& pair);
   TrackedFrame step_of(const input::SequenceFrame& pair);
   std::shared_ptr<LiveFrame> work(PairPtr pair, const input::SourceStatus& status);
+  void note_alive() const;
+  void offer_map();
   void judge(LiveFrame& frame, const input::SequenceFrame& pair);
   void take_config();
   void take_over(const std::optional<ControlEvent>& control);
@@ -151,6 +155,7 @@ class Runner {
   std::atomic<bool> is_paused_ = false;
   std::atomic<std::uint64_t> steps_ = 0;
   std::optional<Clock::time_point> deadline_;
+  Clock::time_point map_offered_;
   std::optional<std::pair<Stamp, Clock::time_point>>
       played_;  // the previous frame of the file, and when it was due
   Drops drops_;

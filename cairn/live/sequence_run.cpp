@@ -116,6 +116,7 @@ SequenceRun::SequenceRun(const input::Sequence& source, std::string source_name,
   if (files.map) {
     map_.emplace(
         MapFile::open(*files.map, is_map_read_only_ ? MapMode::read_only : MapMode::update, source.rig()));
+    map_id_ = map_->map_id();
   }
 }
 

@@ -59,6 +59,8 @@ class SequenceRun {
   /// The landmarks of the last frame; empty without a rig.
   [[nodiscard]] const LandmarkUpdate& marked() const { return marked_; }
   [[nodiscard]] const FollowConfig& config() const { return follower_.config(); }
+  /// MapFile::map_id() of the map; empty without one.
+  [[nodiscard]] const std::string& map_id() const { return map_id_; }
   /// What is assumed about sensors on topics that have no transform to the camera, one line each.
   [[nodiscard]] std::vector<std::string> assumptions() const {
     return live_ ? live_->assumptions() : assumptions_;
@@ -83,6 +85,7 @@ class SequenceRun {
   std::unique_ptr<input::LiveSensors> live_;
   std::vector<std::string> assumptions_;  // of a recording
   std::optional<MapFile> map_;            // nullopt when closed
+  std::string map_id_;
   bool is_map_read_only_ = false;
   std::optional<Pose> start_;
   bool has_begun_ = false;

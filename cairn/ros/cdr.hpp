@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -29,6 +30,13 @@ concept Message = requires {
 /// A number, or ROS' byte.
 template <class T>
 concept CdrValue = std::is_arithmetic_v<T> || std::is_same_v<T, std::byte>;
+
+/// A message whose first members are the key of its DDS topic: numbers and arrays of them. (ROS has no keys before
+/// Kilted.)
+template <class T>
+concept KeyedMessage = Message<T> && requires {
+  T::kKeyMembers;
+};
 
 /// Plain CDR (XCDR1), little endian, as ROS 2 sends and records messages: a header of four bytes, then the
 /// members, each number aligned to its own size counted from the end of the header.
@@ -172,6 +180,26 @@ class CdrReader {
   std::string_view name_ = "its header";  // of the current member
   std::size_t at_ = 0;
 };
+
+/// The sizes of the numbers of a message's key, in order: they follow the header without gaps. Empty: no key.
+template <Message M>
+std::vector<std::uint8_t> key_sizes() {
+  std::vector<std::uint8_t> sizes;
+  if constexpr (KeyedMessage<M>) {
+    int left = M::kKeyMembers;
+    const auto add = [&]<class T>(std::string_view /*name*/, const T& /*member*/) {
+      if (left-- <= 0) return;
+      if constexpr (CdrValue<T>) {
+        sizes.push_back(sizeof(T));
+      } else if constexpr (requires { std::tuple_size<T>::value; }) {
+        sizes.insert(sizes.end(), std::tuple_size_v<T>, sizeof(typename T::value_type));
+      }
+    };
+    const M message;
+    M::each(message, add);
+  }
+  return sizes;
+}
 
 /// The bytes of the message, including the header of four.
 template <Message M>

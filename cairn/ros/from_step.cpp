@@ -83,6 +83,24 @@ std::array<double, 36> covariance_of(const Object& object, Vec3 position, const 
   return covariance;
 }
 
+/// A thing in the frame of a map.
+Detection3D detection_of(const Header& header, const std::string& id, Point3 at,
+                         const Covariance3& covariance, Vector3 size, double score) {
+  Detection3D found;
+  found.header = header;
+  found.id = id;
+  found.bbox.center.position = {at.x, at.y, at.z};
+  found.bbox.size = size;
+  ObjectHypothesisWithPose result;
+  result.hypothesis = {"object", score};
+  result.pose.pose = found.bbox.center;
+  for (std::size_t row = 0; row < 3; ++row)
+    std::copy_n(covariance.begin() + static_cast<std::ptrdiff_t>(3 * row), 3,
+                result.pose.covariance.begin() + static_cast<std::ptrdiff_t>(6 * row));
+  found.results.push_back(std::move(result));
+  return found;
+}
+
 }  // namespace
 
 FrameNames frame_names(const std::string& camera) {
@@ -291,6 +309,42 @@ Detection3DArray detections_of(const Header& header, const TrackedFrame& step,
     result.pose.covariance = covariance_of(object, at, *rig);
     found.results.push_back(std::move(result));
     message.detections.push_back(std::move(found));
+  }
+  return message;
+}
+
+Detection3DArray tracks_of(const Header& header, const TrackedFrame& step, const cairn::Pose& map_from_odom,
+                           const std::string& prefix) {
+  Detection3DArray message;
+  message.header = header;
+  for (const Track& track : step.tracks.list) {
+    if (track.state != TrackState::confirmed || !track.has_place) continue;
+    const Covariance3 covariance =
+        rotated(map_from_odom, covariance_in_map(track, step.map_from_camera, step.pose_covariance));
+    const auto width = double{track.extent_m.x};
+    message.detections.push_back(
+        detection_of(header, prefix + std::to_string(number(track.id)), map_from_odom(track.position_m),
+                     covariance, {width, width, double{track.extent_m.y}}, double{track.confidence}));
+  }
+  return message;
+}
+
+PoseWithCovarianceStamped camera_pose_of(const Header& header, const TrackedFrame& step,
+                                         const cairn::Pose& map_from_odom, const Covariance6& covariance) {
+  const cairn::Pose pose = map_from_odom * step.map_from_camera;
+  const Point3 at = pose.translation_m;
+  return {header, {{{at.x, at.y, at.z}, quaternion_of(pose)}, covariance}};
+}
+
+Detection3DArray landmarks_of(const Header& header, const std::vector<Landmark>& landmarks) {
+  Detection3DArray message;
+  message.header = header;
+  for (const Landmark& landmark : landmarks) {
+    if (landmark.is_gone) continue;
+    const double width = (landmark.size.narrowest_m + landmark.size.widest_m) / 2;
+    message.detections.push_back(
+        detection_of(header, std::to_string(number(landmark.id)), landmark.position_m, landmark.covariance_m2,
+                     {width, width, landmark.size.height_m}, probability_of(landmark.log_odds)));
   }
   return message;
 }

@@ -8,6 +8,7 @@
 
 #include <cairn/ros/messages.hpp>
 #include <cairn/sequence/follower.hpp>
+#include <cairn/sequence/landmarks.hpp>
 
 /// The results of a frame as ROS messages. Positions are in the left camera's optical frame (x right, y down,
 /// z forward), except for the grid, which is in that of the floor.
@@ -67,6 +68,16 @@ Image reject_of(const Header& header, const Frame& frame);
 /// track; the object's number if there was no tracking. score: its confidence. Empty without a rig.
 Detection3DArray detections_of(const Header& header, const TrackedFrame& step,
                                const std::optional<StereoRig>& rig);
+
+/// The confirmed tracks in the frame of `header`, to which `map_from_odom` leads from the frame of odometry; id: the
+/// track's number after `prefix`.
+Detection3DArray tracks_of(const Header& header, const TrackedFrame& step, const cairn::Pose& map_from_odom,
+                           const std::string& prefix);
+/// The camera's pose in the frame of `header`; `covariance`: along the axes of that frame.
+PoseWithCovarianceStamped camera_pose_of(const Header& header, const TrackedFrame& step,
+                                         const cairn::Pose& map_from_odom, const Covariance6& covariance);
+/// Landmarks that are present; `size`: their mean width twice, and their height. id: the landmark's number.
+Detection3DArray landmarks_of(const Header& header, const std::vector<Landmark>& landmarks);
 
 /// The points of obstacles or floor with a disparity, from every `stride`-th pixel of every `stride`-th row:
 /// x y z (m), rgb, object (its number, 0 = none), confidence (of the disparity). Empty without a rig.

@@ -102,6 +102,16 @@ struct PoseWithCovariance {
   }
 };
 
+struct PoseWithCovarianceStamped {
+  static constexpr std::string_view kType = "geometry_msgs/msg/PoseWithCovarianceStamped";
+  Header header;
+  PoseWithCovariance pose;
+  static void each(auto& m, auto&& visit) {
+    visit("header", m.header);
+    visit("pose", m.pose);
+  }
+};
+
 struct Twist {
   static constexpr std::string_view kType = "geometry_msgs/msg/Twist";
   Vector3 linear;

@@ -310,6 +310,7 @@ struct PlacedMap {
   std::optional<Pose> map_from_other;
   std::vector<LandmarkPair> pairs;  // landmark of the other map (as track number), landmark of the merged one
   RecognitionRefusal refusal = RecognitionRefusal::none;
+  std::vector<LandmarkPair> landmarks = {};  // the same of every landmark of the other map, paired or added
 };
 /// `other` transformed into the frame of `map` by relocation, recognised landmarks merged, the others added.
 /// `map_from_other`: the transform, if known.

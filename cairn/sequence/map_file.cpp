@@ -492,6 +492,22 @@ struct MapFile::Store {
     put.exec();
   }
 
+  void store_kept(const std::map<std::string, std::optional<std::string>>& changes) const {
+    if (changes.empty()) return;
+    database->exec(
+        "CREATE TABLE IF NOT EXISTS kept(key TEXT PRIMARY KEY, value BLOB NOT NULL) WITHOUT ROWID");
+    SQLite::Statement put(*database,
+                          "INSERT INTO kept VALUES(?,?) ON CONFLICT(key) DO UPDATE SET value=excluded.value");
+    SQLite::Statement drop(*database, "DELETE FROM kept WHERE key=?");
+    for (const auto& [key, value] : changes) {
+      SQLite::Statement& statement = value ? put : drop;
+      statement.reset();
+      statement.bind(1, key);
+      if (value) statement.bind(2, value->data(), static_cast<int>(value->size()));
+      statement.exec();
+    }
+  }
+
   [[nodiscard]] std::optional<std::string> get(const std::string& key) const {
     SQLite::Statement ask(*database, "SELECT value FROM meta WHERE key=?");
     ask.bind(1, key);
@@ -895,6 +911,10 @@ void MapFile::end_run(RunState state, const LandmarkMap& map) {
 }
 
 void MapFile::replace(const LandmarkMap& map) {
+  keep({}, map);
+}
+
+void MapFile::keep(const std::map<std::string, std::optional<std::string>>& changes, const LandmarkMap& map) {
   store_->guarded([&] {
     Store& s = *store_;
     const LandmarkMap before = load();
@@ -906,12 +926,27 @@ void MapFile::replace(const LandmarkMap& map) {
       s.database->exec("DELETE FROM floor");
       s.store(map);
       s.database->exec("DELETE FROM event WHERE landmark > 0 AND landmark NOT IN (SELECT id FROM landmark)");
+      s.store_kept(changes);
       s.database->exec("COMMIT");
       s.is_open = false;
     } catch (...) {
       s.rollback();
       throw;
     }
+  });
+}
+
+std::map<std::string, std::string> MapFile::kept() const {
+  return store_->guarded([&] {
+    std::map<std::string, std::string> all;
+    if (!store_->database->tableExists("kept")) return all;
+    SQLite::Statement rows(*store_->database, "SELECT key, value FROM kept");
+    while (rows.executeStep()) {
+      const SQLite::Column value = rows.getColumn(1);
+      all[rows.getColumn(0).getString()] =
+          std::string(static_cast<const char*>(value.getBlob()), static_cast<std::size_t>(value.getBytes()));
+    }
+    return all;
   });
 }
 

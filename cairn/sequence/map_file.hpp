@@ -3,7 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -94,6 +96,11 @@ class MapFile {
 
   /// Replaces the whole map: after forget() or merge().
   void replace(const LandmarkMap& map);
+
+  /// Other data that is kept in the file, by key: what a map agent knows of its robots (cairn/fleet).
+  [[nodiscard]] std::map<std::string, std::string> kept() const;
+  /// Adds or replaces what has a value, and removes what has none, together with replace(). Throws Error during a run.
+  void keep(const std::map<std::string, std::optional<std::string>>& changes, const LandmarkMap& map);
 
  private:
   struct Store;

@@ -129,8 +129,10 @@ constexpr std::size_t kMaxAllowed = 300;
 /// A place is refused if chance would give more such places than this …
 constexpr double kByChance = 1e-3;
 /// … or than this where both sides have few objects: they seldom have four in common.
-constexpr double kByChanceOfFew = 5e-3;
+constexpr double kByChanceOfFew = 1e-2;
 constexpr std::size_t kFew = 10;
+/// How much sooner chance gives a place that is no rival of the best.
+constexpr double kClearly = 20;
 
 std::vector<CompatiblePair> allowed_pairs(const LandmarkMap& map, const std::vector<Candidate>& candidates,
                                           const LandmarksConfig& config) {
@@ -508,7 +510,7 @@ class KnownFloor {
   }
 
  private:
-  static constexpr double kLeast = 0.05;
+  static constexpr double kLeast = 0.2;
   static constexpr double kMost = 0.9;
   static constexpr std::size_t kSeenAround = 4;  // free cells of 3 × 3
 
@@ -583,14 +585,23 @@ Recognition placed(const LandmarkMap& map, const std::vector<Candidate>& candida
     result.refusal = RecognitionRefusal::too_few_pairs;
     return result;
   }
-  if (places.size() > 1 && places[0].agreeing() < 2 * places[1].agreeing()) {
+  const Chance chance(pairs, candidates, map, gate);
+  const auto by_chance = [&](const Constellation& place) {
+    return chance.expected(place.pairs.size()) * odds_by_floor(place, pairs, candidates, map, other);
+  };
+  // Another place is no rival if it has few of the pairs, or if chance gives the like of it much sooner and its pairs
+  // fit worse.
+  const auto is_rival = [&](const Constellation& place) {
+    return places[0].agreeing() < 2 * place.agreeing() &&
+           by_chance(place) * std::exp(place.squares / 2) <
+               kClearly * by_chance(places[0]) * std::exp(places[0].squares / 2);
+  };
+  if (places.size() > 1 && is_rival(places[1])) {
     result.refusal = RecognitionRefusal::ambiguous;
     return result;
   }
   const bool are_few = std::max(candidates.size(), map.list.size()) <= kFew;
-  if (!is_near(places[0]) && Chance(pairs, candidates, map, gate).expected(places[0].pairs.size()) *
-                                     odds_by_floor(places[0], pairs, candidates, map, other) >
-                                 (are_few ? kByChanceOfFew : kByChance)) {
+  if (!is_near(places[0]) && by_chance(places[0]) > (are_few ? kByChanceOfFew : kByChance)) {
     result.refusal = RecognitionRefusal::too_few_pairs;
     return result;
   }
@@ -693,14 +704,16 @@ MapMerge unite(LandmarkMap map, const LandmarkMap& other, const Recognition& fou
     here.position_m = pose(landmark.position_m);
     here.covariance_m2 = rotated(pose, landmark.covariance_m2);
     here.looks = turned(landmark.looks, pose);
+    const LandmarkId id = pair == found.pairs.end() ? LandmarkId{merged.map.next++} : pair->landmark;
+    merged.landmarks.push_back({TrackId{number(landmark.id)}, id, 0});
     if (pair == found.pairs.end()) {
-      here.id = LandmarkId{merged.map.next++};
+      here.id = id;
       here.run = 0;
       merged.map.list.push_back(std::move(here));
       continue;
     }
     Landmark& known = *std::find_if(merged.map.list.begin(), merged.map.list.end(),
-                                    [&](const Landmark& l) { return l.id == pair->landmark; });
+                                    [&](const Landmark& l) { return l.id == id; });
     const Matrix3 a = matrix(known.covariance_m2).inverse();
     const Matrix3 b = matrix(here.covariance_m2).inverse();
     const Matrix3 both = (a + b).inverse();
@@ -765,6 +778,7 @@ MapMerge merge_copies(LandmarkMap map, const LandmarkMap& other, const Landmarks
   const Recognition found = recognise(map, candidates_of(fresh), {Pose{}, {}, {}}, shared, config);
   MapMerge merged = unite(std::move(map), fresh, found, Pose{});
   merged.pairs.insert(merged.pairs.begin(), pairs.begin(), pairs.end());
+  merged.landmarks.insert(merged.landmarks.begin(), pairs.begin(), pairs.end());
   return merged;
 }
 

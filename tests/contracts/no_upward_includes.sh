@@ -8,7 +8,7 @@ cd "$1"
 
 # From the lowest to the highest; `cairn` means files directly in that folder.
 ranks='cairn/core cairn/fitted cairn/image cairn/stereo cairn/scene cairn/regions cairn/objects cairn/pipeline cairn/evaluation
-  cairn/diagnosis cairn/tuning cairn cairn/io cairn/device cairn/sequence cairn/ros cairn/output cairn/input cairn/live cairn/timing
+  cairn/diagnosis cairn/tuning cairn cairn/io cairn/device cairn/sequence cairn/ros cairn/fleet cairn/output cairn/input cairn/live cairn/timing
   cairn/batch cli python examples lab tests'
 
 find cairn cli python examples lab tests \( -name '*.?pp' -o -name '*.in' \) 2>/dev/null | sort |

@@ -48,7 +48,8 @@ std::string head_of(const char* topic, std_msgs::msg::dds_::Header_& header) {
 }
 
 void show(vision_msgs::msg::dds_::Detection3DArray_& message) {
-  std::string line = head_of("objects", message.header()) + R"(, "objects": [)";
+  const bool is_map = message.header().frame_id() == "map";
+  std::string line = head_of(is_map ? "map" : "objects", message.header()) + R"(, "objects": [)";
   const char* comma = "";
   for (auto& found : message.detections()) {
     auto& at = found.results()[0].pose().pose().position();
@@ -88,6 +89,17 @@ void show(nav_msgs::msg::dds_::OccupancyGrid_& message) {
         std::to_string(message.info().height()) + R"(, "occupied": )" + std::to_string(occupied) + "}");
 }
 
+void show(cairn_msgs::msg::dds_::Landmark_& row) {
+  std::string robot;
+  for (const std::uint8_t byte : row.robot()) {
+    if (byte != 0) robot += static_cast<char>(byte);
+  }
+  print(R"({"topic": "rows", "robot": ")" + robot + R"(", "id": )" + std::to_string(row.id()) +
+        R"(, "version": )" + std::to_string(row.version()) + R"(, "seen": )" + std::to_string(row.seen()) +
+        R"(, "position": [)" + number(row.position().x()) + ", " + number(row.position().y()) + ", " +
+        number(row.position().z()) + R"(], "looks": )" + std::to_string(row.looks().size()) + "}");
+}
+
 template <class Message>
 class Listener : public DataReaderListener {
  public:
@@ -100,13 +112,18 @@ class Listener : public DataReaderListener {
 };
 
 template <class Message, class Type>
-void listen(DomainParticipant& participant, Subscriber& subscriber, const std::string& topic) {
+void listen(DomainParticipant& participant, Subscriber& subscriber, const std::string& topic,
+            bool is_latched = false) {
   TypeSupport type(new Type());
   type.register_type(&participant);
   Topic* const made = participant.create_topic("rt" + topic, type.get_type_name(), TOPIC_QOS_DEFAULT);
   DataReaderQos qos = DATAREADER_QOS_DEFAULT;
   qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
   qos.history().kind = KEEP_ALL_HISTORY_QOS;
+  qos.resource_limits().max_samples = 0;  // no limit; by default, ten instances
+  qos.resource_limits().max_instances = 0;
+  qos.resource_limits().max_samples_per_instance = 0;
+  if (is_latched) qos.durability().kind = TRANSIENT_LOCAL_DURABILITY_QOS;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   static Listener<Message> listener;
   if (made == nullptr || subscriber.create_datareader(made, qos, &listener) == nullptr) {
@@ -141,6 +158,11 @@ int main(int argc, char** argv) {
       *participant, *subscriber, name + "/disparity");
   listen<nav_msgs::msg::dds_::OccupancyGrid_, nav_msgs::msg::dds_::OccupancyGrid_PubSubType>(
       *participant, *subscriber, name + "/grid");
+  // Of agents, whose name is /cairn.
+  listen<vision_msgs::msg::dds_::Detection3DArray_, vision_msgs::msg::dds_::Detection3DArray_PubSubType>(
+      *participant, *subscriber, name + "/map/landmarks", true);
+  listen<cairn_msgs::msg::dds_::Landmark_, cairn_msgs::msg::dds_::Landmark_PubSubType>(
+      *participant, *subscriber, name + "/landmarks", true);
   while (is_over == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   std::_Exit(0);
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cairn/core/error.hpp>
+#include <cairn/fleet/fleet_book.hpp>
 #include <cairn/input/laser_scans.hpp>
 #include <cairn/input/priors.hpp>
 #include <cairn/input/sequence.hpp>
@@ -31,8 +32,10 @@
 #include <cairn/sequence/map_file.hpp>
 #include <cairn/sequence/stamps.hpp>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -419,6 +422,70 @@ std::vector<std::string> message_bytes() {
           text(ros::encode(ros::Detection3DArray{})), text(ros::encode(ros::TFMessage{}))};
 }
 
+/// Rows of another robot, one after the other: a letter for the type, four bytes of length, and the bytes.
+bool fleet_rows(std::string_view bytes) {
+  fleet::FleetBook book;
+  bool taken = false;
+  const auto take = [&]<class Row>(const Row*, std::string_view row) {
+    taken |= is_taken([&] {
+      (void)book.take(ros::decode<Row>({reinterpret_cast<const std::uint8_t*>(row.data()), row.size()}));
+    });
+  };
+  while (bytes.size() >= 5) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, bytes.data() + 1, sizeof length);
+    const char type = bytes[0];
+    const std::string_view row = bytes.substr(5, length);
+    bytes.remove_prefix(5 + row.size());
+    if (type == 'l') take(static_cast<fleet::LandmarkRow*>(nullptr), row);
+    if (type == 'f') take(static_cast<fleet::FloorRow*>(nullptr), row);
+    if (type == 'i') take(static_cast<fleet::IndexRow*>(nullptr), row);
+    if (type == 'a')
+      taken |= is_taken([&] {
+        (void)ros::decode<fleet::AgentRow>({reinterpret_cast<const std::uint8_t*>(row.data()), row.size()});
+      });
+  }
+  const fleet::SharedMap shared =
+      fleet::share(book.maps(), {{}, book.origin(false)}, book.ids(), LandmarksConfig{});
+  book.set_ids(shared.ids);
+  std::map<std::string, std::string> kept;
+  for (const auto& [key, value] : book.changes()) kept[key] = value.value_or("");
+  (void)fleet::FleetBook(kept);
+  return taken;
+}
+std::vector<std::string> fleet_row_bytes() {
+  std::string rows;
+  const auto add = [&](char type, const auto& row) {
+    const ros::Bytes bytes = ros::encode(row);
+    const auto length = static_cast<std::uint32_t>(bytes.size());
+    rows += type + std::string(reinterpret_cast<const char*>(&length), sizeof length) +
+            std::string(bytes.begin(), bytes.end());
+  };
+  for (const std::uint8_t map : {std::uint8_t{1}, std::uint8_t{2}}) {
+    const fleet::RobotKey robot{{map}, "a"};
+    for (const std::int64_t id : {1, 2, 3, 4}) {
+      Landmark landmark;
+      landmark.id = LandmarkId{id};
+      landmark.position_m = {static_cast<double>(id * id), static_cast<double>(id % 3), 0.2};
+      landmark.covariance_m2 = {0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01};
+      landmark.size = {0.2, 0.3, 0.4};
+      landmark.looks.resize(1);
+      landmark.looks[0].colours[static_cast<std::size_t>(id)] = 1;
+      landmark.looks[0].colours[static_cast<std::size_t>(20 + id)] = 1;
+      add('l', fleet::row_of(landmark, robot, 2));
+    }
+    add('f', fleet::rows_of({{1, 2, 7}, {-9, 0, 3}}, robot, 2)[0]);
+    fleet::IndexRow index;
+    index.map_id = robot.map_id;
+    index.robot = fleet::bytes_of("a");
+    index.version = 2;
+    index.landmarks = {1, 2, 3, 4};
+    add('i', index);
+  }
+  add('a', fleet::AgentRow{});
+  return {rows};
+}
+
 bool recording(std::string_view bytes) {
   if (!ros::has_mcap()) return true;
   const fs::path file = written("run.mcap", bytes);
@@ -657,6 +724,7 @@ const std::vector<Target>& targets() {
       {"tracks", tracks, track_lines},
       {"map", map_file, map_files},
       {"messages", messages, message_bytes},
+      {"fleet_rows", fleet_rows, fleet_row_bytes},
       {"recording", recording, recordings},
       {"request", request, requests},
       {"parameters", parameters, parameter_lists},

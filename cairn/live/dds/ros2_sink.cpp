@@ -25,7 +25,7 @@ constexpr double kSilent_s = 1;
 class Publisher {
  public:
   Publisher(const ros::Participant& participant, const Topic& topic, const std::string& name_space)
-      : topic_(topic), name_(full_name(topic, name_space)), writer_(participant, name_, topic.type) {}
+      : topic_(topic), name_(full_name(topic, name_space)), writer_(participant, name_, {topic.type, {}}) {}
 
   /// Makes the message only if there are readers.
   void publish(const LiveFrame& frame, const MessageForm& form) {

@@ -4,25 +4,48 @@
 
 #include <dds/ddsi/q_radmin.h>
 #include <dds/ddsrt/heap.h>
+#include <dds/ddsrt/md5.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <new>
+#include <numeric>
 
 namespace cairn::ros {
 namespace {
 
-struct CdrType : ddsi_sertype {};
+constexpr std::size_t kHeader = 4;
+
+struct CdrType : ddsi_sertype {
+  std::vector<std::uint8_t> key;  // sizes of its numbers, which follow the header
+};
+
+/// The sizes of the key's numbers, and all of them together.
+const std::vector<std::uint8_t>& key_of(const ddsi_sertype* type) {
+  return static_cast<const CdrType*>(type)->key;
+}
+std::size_t key_length(const ddsi_sertype* type) {
+  const std::vector<std::uint8_t>& key = key_of(type);
+  return std::accumulate(key.begin(), key.end(), std::size_t{0});
+}
 
 /// Padded to a multiple of four bytes, as in RTPS; `size` excludes the padding.
 struct CdrData : ddsi_serdata {
   CdrData(const ddsi_sertype* cdr_type, ddsi_serdata_kind data_kind, Bytes value)
-      : ddsi_serdata{}, bytes(std::move(value)), length(bytes.size()) {
+      : ddsi_serdata{}, bytes(std::move(value)), length(bytes.size()), key_bytes(key_length(cdr_type)) {
     ddsi_serdata_init(this, cdr_type, data_kind);
     bytes.resize((length + 3) / 4 * 4);
   }
+  [[nodiscard]] std::span<const std::uint8_t> key() const { return {bytes.data() + kHeader, key_bytes}; }
+  /// Cyclone finds instances by it.
+  void set_hash() {
+    hash = 2166136261U;  // FNV-1a
+    for (const std::uint8_t byte : key()) hash = (hash ^ byte) * 16777619U;
+  }
   Bytes bytes;
   std::size_t length = 0;
+  std::size_t key_bytes = 0;  // 0: without a key, all samples belong to one instance
 };
 
 const CdrData& own(const ddsi_serdata* data) {
@@ -40,8 +63,22 @@ CdrData* make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size
 
 // ---- samples ----
 
-bool equal_keys(const ddsi_serdata*, const ddsi_serdata*) {
-  return true;  // without a key, all samples belong to one instance
+/// The value once its bytes are in place; nullptr if it is too short, or of another encoding, to have its key where it
+/// is looked for.
+CdrData* finished(CdrData* data) {
+  if (data == nullptr || data->key_bytes == 0) return data;
+  const bool has_key =
+      data->length >= kHeader + data->key_bytes && data->bytes[0] == 0 && data->bytes[1] == 1;
+  if (!has_key) {
+    delete data;
+    return nullptr;
+  }
+  data->set_hash();
+  return data;
+}
+
+bool equal_keys(const ddsi_serdata* a, const ddsi_serdata* b) {
+  return std::ranges::equal(own(a).key(), own(b).key());
 }
 
 std::uint32_t size_of(const ddsi_serdata* data) {
@@ -61,7 +98,7 @@ ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind, c
     std::copy(payload + (done - fragment->min), payload + (end - fragment->min), data->bytes.data() + done);
     done = end;
   }
-  return data;
+  return finished(data);
 }
 
 ddsi_serdata* from_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
@@ -74,20 +111,21 @@ ddsi_serdata* from_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsr
     std::copy_n(static_cast<const std::uint8_t*>(pieces[i].iov_base), length, data->bytes.data() + done);
     done += length;
   }
-  return data;
+  return finished(data);
 }
 
+/// A hash of more than 16 bytes does not say the key.
 ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) {
-  return make(type, SDK_KEY, 4);
+  return key_length(type) == 0 ? make(type, SDK_KEY, kHeader) : nullptr;
 }
 
 /// A sample consists of the serialised bytes.
 ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
-  if (kind != SDK_DATA) return make(type, kind, 4);
   const auto& bytes = *static_cast<const Bytes*>(sample);
-  CdrData* const data = make(type, kind, bytes.size());
-  if (data != nullptr) std::copy(bytes.begin(), bytes.end(), data->bytes.begin());
-  return data;
+  const std::size_t wanted = kind == SDK_DATA ? bytes.size() : kHeader + key_length(type);
+  CdrData* const data = make(type, kind, wanted);
+  if (data != nullptr && wanted <= bytes.size()) std::copy_n(bytes.begin(), wanted, data->bytes.begin());
+  return finished(data);
 }
 
 void to_bytes(const ddsi_serdata* data, std::size_t offset, std::size_t size, void* to) {
@@ -117,14 +155,17 @@ bool to_sample(const ddsi_serdata* data, void* sample, void**, void*) {
 }
 
 ddsi_serdata* to_untyped(const ddsi_serdata* data) {
-  CdrData* const untyped = make(data->type, SDK_KEY, 4);
-  if (untyped != nullptr) untyped->type = nullptr;
+  const std::size_t length = kHeader + own(data).key_bytes;
+  CdrData* const untyped = make(data->type, SDK_KEY, length);
+  if (untyped == nullptr) return nullptr;
+  std::copy_n(own(data).bytes.begin(), std::min(length, own(data).length), untyped->bytes.begin());
+  untyped->hash = data->hash;
+  untyped->type = nullptr;
   return untyped;
 }
 
-bool untyped_to_sample(const ddsi_sertype*, const ddsi_serdata*, void* sample, void**, void*) {
-  static_cast<Bytes*>(sample)->clear();
-  return true;
+bool untyped_to_sample(const ddsi_sertype*, const ddsi_serdata* data, void* sample, void**, void*) {
+  return to_sample(data, sample, nullptr, nullptr);
 }
 
 void free_data(ddsi_serdata* data) {
@@ -135,8 +176,24 @@ std::size_t print(const ddsi_sertype*, const ddsi_serdata* data, char* to, std::
   return static_cast<std::size_t>(std::max(0, std::snprintf(to, size, "%zu bytes", own(data).length)));
 }
 
-void keyhash_of(const ddsi_serdata*, ddsi_keyhash* hash, bool) {
-  std::fill(std::begin(hash->value), std::end(hash->value), static_cast<unsigned char>(0));
+/// The key in big endian if it fits, else its MD5 (RTPS 2.2, 9.6.3.8).
+void keyhash_of(const ddsi_serdata* data, ddsi_keyhash* hash, bool must_be_md5) {
+  std::ranges::fill(hash->value, static_cast<unsigned char>(0));
+  if (own(data).key_bytes == 0) return;
+  std::vector<std::uint8_t> key(own(data).key().begin(), own(data).key().end());
+  auto at = key.begin();
+  for (const std::uint8_t size : key_of(data->type)) {
+    std::reverse(at, at + size);
+    at += size;
+  }
+  if (key.size() <= std::size(hash->value) && !must_be_md5) {
+    std::ranges::copy(key, std::begin(hash->value));
+    return;
+  }
+  ddsrt_md5_state_t md5;
+  ddsrt_md5_init(&md5);
+  ddsrt_md5_append(&md5, key.data(), static_cast<unsigned>(key.size()));
+  ddsrt_md5_finish(&md5, hash->value);
 }
 
 constexpr ddsi_serdata_ops data_operations() {
@@ -194,15 +251,16 @@ const ddsi_sertype_ops kTypeOperations = type_operations();
 
 }  // namespace
 
-ddsi_sertype* make_cdr_type(const std::string& name) {
+ddsi_sertype* make_cdr_type(const std::string& name, std::vector<std::uint8_t> key) {
   auto type = std::make_unique<CdrType>();
-  ddsi_sertype_init(type.get(), name.c_str(), &kTypeOperations, &kDataOperations, true);
+  ddsi_sertype_init(type.get(), name.c_str(), &kTypeOperations, &kDataOperations, key.empty());
+  type->key = std::move(key);
   type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   return type.release();
 }
 
 ddsi_serdata* make_cdr_data(const ddsi_sertype* type, Bytes bytes) {
-  return new CdrData(type, SDK_DATA, std::move(bytes));
+  return finished(new CdrData(type, SDK_DATA, std::move(bytes)));
 }
 
 std::span<const std::uint8_t> bytes_of(const ddsi_serdata* data) {

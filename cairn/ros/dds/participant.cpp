@@ -8,7 +8,10 @@
 #include <cairn/core/error.hpp>
 #include <cctype>
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <map>
 #include <mutex>
 
 #include <cairn/ros/dds/cdr_type.hpp>
@@ -75,14 +78,35 @@ std::string domain_words(std::uint32_t id) {
   return "DDS domain " + std::to_string(id) + (uri.empty() ? "" : " with CYCLONEDDS_URI=" + uri);
 }
 
+/// Cyclone prints a line for each packet that a link without network refuses, 25 a second.
+void print_seldom(void* /*unused*/, const dds_log_data_t* line) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kInterval = std::chrono::seconds(10);
+  static std::mutex mutex;
+  static Clock::time_point last;
+  static int left_out = 0;
+  const std::lock_guard lock(mutex);
+  if (last != Clock::time_point{} && Clock::now() - last < kInterval) {
+    ++left_out;
+    return;
+  }
+  last = Clock::now();
+  const std::string_view text(line->message, std::strcspn(line->message, "\n"));
+  std::fprintf(stderr, "cairn: DDS: %.*s%s\n", static_cast<int>(text.size()), text.data(),
+               left_out > 0 ? (" (and " + std::to_string(left_out) + " more)").c_str() : "");
+  left_out = 0;
+}
+
 /// The configuration of a domain in this process: created with the first participant, destroyed with the
 /// last.
 std::shared_ptr<Entity> domain_of(const DomainSettings& settings) {
   static std::mutex mutex;
-  static std::weak_ptr<Entity> known;
+  static std::map<std::uint32_t, std::weak_ptr<Entity>> all;
   if (settings.configuration.empty()) return nullptr;
   const std::lock_guard lock(mutex);
+  std::weak_ptr<Entity>& known = all[settings.id];
   if (auto domain = known.lock()) return domain;
+  dds_set_log_sink(&print_seldom, nullptr);
   const dds_entity_t domain = dds_create_domain(settings.id, settings.configuration.c_str());
   if (domain == DDS_RETCODE_PRECONDITION_NOT_MET) return nullptr;  // created elsewhere in this process
   auto made = std::make_shared<Entity>(domain, domain_words(settings.id));
@@ -92,12 +116,16 @@ std::shared_ptr<Entity> domain_of(const DomainSettings& settings) {
 
 using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
-Qos make_qos(std::string_view ros_type, bool reliable, int depth, bool latched = false) {
+Qos make_qos(std::string_view ros_type, bool reliable, int depth, bool latched) {
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        kMaxBlocking);
   dds_qset_durability(qos.get(), latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
+  if (latched) {
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, depth, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
   if (const std::string_view hash = type_hash(ros_type); !hash.empty()) {
     const std::string data = "typehash=" + std::string(hash) + ";";
     dds_qset_userdata(qos.get(), data.data(), data.size());
@@ -110,8 +138,8 @@ struct Topic {
   const ddsi_sertype* type = nullptr;
 };
 
-Topic make_topic(const Participant& participant, const std::string& topic, std::string_view ros_type) {
-  ddsi_sertype* type = make_cdr_type(dds_type_name(ros_type));
+Topic make_topic(const Participant& participant, const std::string& topic, const TopicType& topic_type) {
+  ddsi_sertype* type = make_cdr_type(dds_type_name(topic_type.ros), topic_type.key);
   const dds_entity_t handle = dds_create_topic_sertype(participant.handle(), ("rt" + topic).c_str(), &type,
                                                        nullptr, nullptr, nullptr);
   if (handle < 0) ddsi_sertype_unref(type);
@@ -151,6 +179,22 @@ DomainSettings domain_of_environment() {
   return settings;
 }
 
+DomainSettings domain_of_fleet(std::uint32_t id, const std::string& interface) {
+  if (id > kLastDomain)
+    throw Error("fleet domain: found " + std::to_string(id) + ", expected 0 ... " +
+                std::to_string(kLastDomain));
+  if (interface.find_first_of("<>&\"'") != std::string::npos)
+    throw Error("fleet interface: found " + interface + ", expected the name of a network interface");
+  std::string settings =
+      interface.empty()
+          ? localhost_discovery(R"(<Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>)")
+          : configured("<General><Interfaces><NetworkInterface name=\"" + interface +
+                       "\"/></Interfaces></General>");
+  settings += "," + configured("<Discovery><SPDPInterval>1s</SPDPInterval></Discovery>");
+  if (const std::string uri = environment("CYCLONEDDS_URI"); !uri.empty()) settings += "," + uri;
+  return {id, settings};
+}
+
 Participant::Participant(const DomainSettings& settings)
     : id_(settings.id),
       domain_(domain_of(settings)),
@@ -186,12 +230,14 @@ std::string dds_type_name(std::string_view ros_type) {
 
 // ---- writing ----
 
-BytesWriter::BytesWriter(const Participant& participant, const std::string& topic, std::string_view ros_type,
-                         bool latched) {
-  Topic made = make_topic(participant, topic, ros_type);
-  writer_ = Entity(dds_create_writer(participant.handle(), made.entity.handle(),
-                                     make_qos(ros_type, true, 5, latched).get(), nullptr),
-                   topic);
+BytesWriter::BytesWriter(const Participant& participant, const std::string& topic, const TopicType& type,
+                         WriterQos qos) {
+  Topic made = make_topic(participant, topic, type);
+  const Qos how = make_qos(type.ros, true, qos.depth, qos.latched);
+  if (qos.lease) dds_qset_liveliness(how.get(), DDS_LIVELINESS_MANUAL_BY_TOPIC, qos.lease->count());
+  // What a reader holds of a writer that has gone is still true.
+  dds_qset_writer_data_lifecycle(how.get(), false);
+  writer_ = Entity(dds_create_writer(participant.handle(), made.entity.handle(), how.get(), nullptr), topic);
   topic_ = std::move(made.entity);
   type_ = made.type;
 }
@@ -203,8 +249,12 @@ bool BytesWriter::has_reader() const {
 }
 
 bool BytesWriter::write(Bytes message) {
-  return dds_writecdr(writer_.handle(), make_cdr_data(static_cast<const ddsi_sertype*>(type_),
-                                                      std::move(message))) == DDS_RETCODE_OK;
+  ddsi_serdata* const data = make_cdr_data(static_cast<const ddsi_sertype*>(type_), std::move(message));
+  return data != nullptr && dds_writecdr(writer_.handle(), data) == DDS_RETCODE_OK;
+}
+
+void BytesWriter::assert_alive() const {
+  dds_assert_liveliness(writer_.handle());
 }
 
 bool BytesWriter::wait_for_readers(std::chrono::nanoseconds timeout) const {
@@ -213,26 +263,30 @@ bool BytesWriter::wait_for_readers(std::chrono::nanoseconds timeout) const {
 
 // ---- reading ----
 
-BytesReader::BytesReader(const Participant& participant, const std::string& topic, std::string_view ros_type,
+BytesReader::BytesReader(const Participant& participant, const std::string& topic, const TopicType& type,
                          ReaderQos qos) {
-  Topic made = make_topic(participant, topic, ros_type);
+  Topic made = make_topic(participant, topic, type);
   reader_ = Entity(dds_create_reader(participant.handle(), made.entity.handle(),
-                                     make_qos(ros_type, qos.reliable, qos.depth, qos.latched).get(), nullptr),
+                                     make_qos(type.ros, qos.reliable, qos.depth, qos.latched).get(), nullptr),
                    topic);
   topic_ = std::move(made.entity);
 }
 
+std::optional<BytesReader::Change> BytesReader::take_change() {
+  ddsi_serdata* data = nullptr;
+  dds_sample_info_t info{};
+  if (dds_takecdr(reader_.handle(), &data, 1, &info, DDS_ANY_STATE) <= 0 || data == nullptr)
+    return std::nullopt;
+  const std::unique_ptr<ddsi_serdata, decltype(&ddsi_serdata_unref)> owned(data, &ddsi_serdata_unref);
+  const auto bytes = bytes_of(data);
+  return Change{{bytes.begin(), bytes.end()}, info.valid_data};
+}
+
 std::optional<Bytes> BytesReader::take() {
-  while (true) {
-    ddsi_serdata* data = nullptr;
-    dds_sample_info_t info{};
-    if (dds_takecdr(reader_.handle(), &data, 1, &info, DDS_ANY_STATE) <= 0 || data == nullptr)
-      return std::nullopt;
-    const std::unique_ptr<ddsi_serdata, decltype(&ddsi_serdata_unref)> owned(data, &ddsi_serdata_unref);
-    if (!info.valid_data) continue;  // a writer disappeared
-    const auto bytes = bytes_of(data);
-    return Bytes(bytes.begin(), bytes.end());
+  while (std::optional<Change> change = take_change()) {
+    if (change->is_alive) return std::move(change->bytes);  // else a writer disappeared
   }
+  return std::nullopt;
 }
 
 std::uint64_t BytesReader::lost() const {

@@ -45,6 +45,9 @@ struct DomainSettings {
 };
 /// Throws Error if a variable has an invalid value.
 DomainSettings domain_of_environment();
+/// The domain that agents share: this computer only, or the network of `interface`, if given ("wlan0"). Members that were
+/// cut off are found again within a second. CYCLONEDDS_URI overrides it. Throws Error for a domain without ports.
+DomainSettings domain_of_fleet(std::uint32_t id, const std::string& interface);
 
 /// A member of a domain; sockets are open while one exists.
 class Participant {
@@ -68,16 +71,34 @@ std::string dds_type_name(std::string_view ros_type);
 /// here.
 std::string_view type_hash(std::string_view ros_type);
 
-/// RELIABLE, VOLATILE, KEEP_LAST 5: compatible with readers of any reliability.
+/// The type of a topic.
+struct TopicType {
+  std::string_view ros;           // "sensor_msgs/msg/Image"
+  std::vector<std::uint8_t> key;  // key_sizes()
+};
+template <Message M>
+TopicType topic_type() {
+  return {M::kType, key_sizes<M>()};
+}
+
+/// RELIABLE, VOLATILE, KEEP_LAST 5: compatible with readers of any reliability. `depth`: of each instance; latched:
+/// later readers receive the last ones, too.
+struct WriterQos {
+  bool latched = false;
+  int depth = 5;
+  /// Readers notice within this time that write() and assert_alive() are no longer called.
+  std::optional<std::chrono::nanoseconds> lease = std::nullopt;
+};
 class BytesWriter {
  public:
-  /// `topic` as in ROS: "/cairn/objects"; latched: later readers receive the last ones, too. Throws Error.
-  BytesWriter(const Participant& participant, const std::string& topic, std::string_view ros_type,
-              bool latched = false);
+  /// `topic` as in ROS: "/cairn/objects". Throws Error.
+  BytesWriter(const Participant& participant, const std::string& topic, const TopicType& type,
+              WriterQos qos = {});
   /// Whether there is a subscriber, in this process or another.
   [[nodiscard]] bool has_reader() const;
-  /// False if readers were too slow to accept it for 0.1 s.
+  /// False if readers were too slow to accept it for 0.1 s, or the message is too short for its key.
   bool write(Bytes message);
+  void assert_alive() const;
   /// Waits until all readers have received everything written; false on timeout.
   bool wait_for_readers(std::chrono::nanoseconds timeout) const;
 
@@ -97,10 +118,16 @@ struct ReaderQos {
 class BytesReader {
  public:
   /// Throws Error.
-  BytesReader(const Participant& participant, const std::string& topic, std::string_view ros_type,
+  BytesReader(const Participant& participant, const std::string& topic, const TopicType& type,
               ReaderQos qos = {});
   /// The next message; nullopt if there is none now.
   std::optional<Bytes> take();
+  /// The next change of an instance: a message, or that its writers have gone or are not alive; `bytes` is then its key.
+  struct Change {
+    Bytes bytes;
+    bool is_alive = true;
+  };
+  std::optional<Change> take_change();
   /// Messages that were sent but not received, or replaced before they were taken.
   [[nodiscard]] std::uint64_t lost() const;
   [[nodiscard]] bool has_writer() const;
@@ -126,8 +153,8 @@ class ReaderWait {
 template <Message M>
 class Writer : public BytesWriter {
  public:
-  Writer(const Participant& participant, const std::string& topic, bool latched = false)
-      : BytesWriter(participant, topic, M::kType, latched) {}
+  Writer(const Participant& participant, const std::string& topic, WriterQos qos = {})
+      : BytesWriter(participant, topic, topic_type<M>(), qos) {}
   bool write(const M& message) { return BytesWriter::write(encode(message)); }
 };
 
@@ -135,7 +162,7 @@ template <Message M>
 class Reader : public BytesReader {
  public:
   Reader(const Participant& participant, const std::string& topic, ReaderQos qos = {})
-      : BytesReader(participant, topic, M::kType, qos) {}
+      : BytesReader(participant, topic, topic_type<M>(), qos) {}
   /// Throws Error if the bytes are not such a message.
   std::optional<M> take() {
     const std::optional<Bytes> bytes = BytesReader::take();

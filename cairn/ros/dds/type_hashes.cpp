@@ -9,7 +9,7 @@ namespace cairn::ros {
 namespace {
 
 /// tests/unit/ros/dds_test.cpp derives them from the members of the messages.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kTypeHashes{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kTypeHashes{
     {{"std_msgs/msg/String", "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"},
      {"sensor_msgs/msg/Image", "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"},
      {"sensor_msgs/msg/CameraInfo",
@@ -22,6 +22,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kTypeHas
       "RIHS01_793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018"},
      {"nav_msgs/msg/OccupancyGrid",
       "RIHS01_8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7"},
+     {"geometry_msgs/msg/PoseWithCovarianceStamped",
+      "RIHS01_26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e"},
      {"sensor_msgs/msg/LaserScan", "RIHS01_64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828"},
      {"sensor_msgs/msg/Imu", "RIHS01_7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b"},
      {"nav_msgs/msg/Odometry", "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"},

@@ -6,17 +6,22 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/fleet/rows.hpp>
 #include <cairn/input/dds/ros2_sensors.hpp>
 #include <cairn/input/dds/ros2_sequence.hpp>
 #include <cairn/input/ros_pictures.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/image_files.hpp>
+#include <cairn/live/dds/agents.hpp>
 #include <cairn/live/dds/ros2_sink.hpp>
 #include <cairn/live/topics.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/ros/dds/participant.hpp>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
 
 #include "support/dds_domain.hpp"
 #include "support/sensor_messages.hpp"
@@ -106,6 +111,7 @@ TEST_F(Dds, TypeHashesFollowFromTheMembers) {
   expect_known_hash<Imu>();
   expect_known_hash<Odometry>();
   expect_known_hash<DiagnosticArray>();
+  expect_known_hash<PoseWithCovarianceStamped>();
   // As published by ROS 2's interface packages.
   EXPECT_EQ(type_hash("std_msgs/msg/String"),
             "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
@@ -149,7 +155,7 @@ void expect_the_bytes_of_cyclone(const M& message, const dds_topic_descriptor_t&
   const std::string there = own_topic("there/" + std::string(M::kType.substr(M::kType.rfind('/') + 1)));
   const std::string back = own_topic("back/" + std::string(M::kType.substr(M::kType.rfind('/') + 1)));
   Writer<M> writer(ours, there);
-  BytesReader reader(ours, back, M::kType, {true, 5});
+  BytesReader reader(ours, back, topic_type<M>(), {true, 5});
 
   const Entity theirs(dds_create_participant(ours.domain(), nullptr, nullptr), "theirs");
   const Entity there_topic(
@@ -225,6 +231,180 @@ TEST_F(Dds, BytesEqualThoseOfCyclone) {
       DiagnosticStatus::kWarn, "cairn: perception", "dark", "", {{"a", "1"}, {"bc", ""}}};
   expect_the_bytes_of_cyclone<diagnostic_msgs_msg_dds__DiagnosticArray_>(
       DiagnosticArray{header, {status, status}}, diagnostic_msgs_msg_dds__DiagnosticArray__desc);
+  expect_the_bytes_of_cyclone<geometry_msgs_msg_dds__PoseWithCovarianceStamped_>(
+      camera_pose_of(header, step, {}, {1, 2, 3}), geometry_msgs_msg_dds__PoseWithCovarianceStamped__desc);
+}
+
+// ---- topics with keys ----
+
+fleet::LandmarkRow row_of(std::int64_t id, std::uint64_t version, const std::string& name) {
+  Landmark landmark;
+  landmark.id = LandmarkId{id};
+  landmark.name = name;
+  landmark.position_m = {1, 2, 3};
+  landmark.covariance_m2 = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  landmark.looks.resize(1);
+  landmark.looks[0].octant = 3;
+  landmark.looks[0].colours[5] = 1;
+  return fleet::row_of(landmark, {{1, 2, 3}, "a"}, version);
+}
+
+TEST_F(Dds, RowsHaveTheBytesAndKeysOfCyclone) {
+  expect_the_bytes_of_cyclone<cairn_msgs_msg_dds__Landmark_>(row_of(7, 9, "cup"),
+                                                             cairn_msgs_msg_dds__Landmark__desc);
+  fleet::FloorRow tile;
+  tile.x = -3;
+  tile.frames[63] = 7;
+  expect_the_bytes_of_cyclone<cairn_msgs_msg_dds__FloorTile_>(tile, cairn_msgs_msg_dds__FloorTile__desc);
+  fleet::IndexRow index;
+  index.landmarks = {1, 5};
+  index.tile_x = index.tile_y = {-1, 2, 3};
+  expect_the_bytes_of_cyclone<cairn_msgs_msg_dds__MapIndex_>(index, cairn_msgs_msg_dds__MapIndex__desc);
+  fleet::AgentRow agent;
+  agent.name = "a";
+  agent.robots.resize(2);
+  agent.robots[1].name = "b";
+  expect_the_bytes_of_cyclone<cairn_msgs_msg_dds__Agent_>(agent, cairn_msgs_msg_dds__Agent__desc);
+  EXPECT_EQ(key_sizes<fleet::FloorRow>().size(), 50U);
+  EXPECT_TRUE(key_sizes<String>().empty());
+}
+
+/// Among the last rows that a generated reader holds, as it counts instances by its own idea of the key.
+TEST_F(Dds, AnotherReaderCountsTheSameInstances) {
+  const Participant ours;
+  const std::string topic = own_topic("instances");
+  Writer<fleet::LandmarkRow> writer(ours, topic, {.latched = true, .depth = 1});
+  for (std::uint64_t version = 1; version <= 3; ++version) {
+    for (const std::int64_t id : {1, 2, 300})
+      writer.write(row_of(id, version, "of " + std::to_string(version)));
+  }
+  const Entity theirs(dds_create_participant(ours.domain(), nullptr, nullptr), "theirs");
+  const Entity their_topic(dds_create_topic(theirs.handle(), &cairn_msgs_msg_dds__Landmark__desc,
+                                            ("rt" + topic).c_str(), nullptr, nullptr),
+                           topic);
+  dds_qos_t* qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
+  const Entity reader(dds_create_reader(theirs.handle(), their_topic.handle(), qos, nullptr), topic);
+  dds_delete_qos(qos);
+  std::map<std::int64_t, std::uint64_t> versions;
+  EXPECT_TRUE(comes_true([&] {
+    void* sample = nullptr;
+    dds_sample_info_t info{};
+    while (dds_take(reader.handle(), &sample, &info, 1, 1) == 1) {
+      const auto* row = static_cast<const cairn_msgs_msg_dds__Landmark_*>(sample);
+      if (info.valid_data) versions[row->id] = row->version;
+      dds_return_loan(reader.handle(), &sample, 1);
+    }
+    return versions.size() == 3;
+  }));
+  EXPECT_EQ(versions, (std::map<std::int64_t, std::uint64_t>{{1, 3}, {2, 3}, {300, 3}}));
+}
+
+TEST_F(Dds, ALateReaderGetsTheLastRowOfEachKey) {
+  const Participant participant;
+  const std::string topic = own_topic("rows");
+  Writer<fleet::LandmarkRow> writer(participant, topic, {.latched = true, .depth = 1});
+  constexpr std::int64_t kRows = 2000;
+  for (std::uint64_t version = 1; version <= 2; ++version) {
+    for (std::int64_t id = 1; id <= kRows; ++id) writer.write(row_of(id, version, ""));
+  }
+  Reader<fleet::LandmarkRow> late(participant, topic, {.reliable = true, .depth = 1, .latched = true});
+  std::set<std::int64_t> ids;
+  std::size_t count = 0;
+  EXPECT_TRUE(comes_true([&] {
+    while (const auto row = late.take()) {
+      EXPECT_EQ(row->version, 2U);
+      ids.insert(row->id);
+      ++count;
+    }
+    return ids.size() == kRows;
+  }));
+  EXPECT_EQ(count, static_cast<std::size_t>(kRows));
+}
+
+TEST_F(Dds, AnAgentThatSaysNothingIsNotAlive) {
+  const Participant here;
+  const std::string topic = own_topic("agents");
+  Reader<fleet::AgentRow> reader(here, topic, {.reliable = true, .depth = 1, .latched = true});
+  Writer<fleet::AgentRow> writer(here, topic, {.latched = true, .depth = 1, .lease = 300ms});
+  fleet::AgentRow row;
+  row.agent = {4, 5, 6};
+  row.name = "a";
+  ASSERT_TRUE(comes_true([&] { return writer.has_reader() && reader.has_writer(); }));
+  writer.write(row);
+  std::optional<BytesReader::Change> change;
+  ASSERT_TRUE(comes_true([&] { return (change = reader.take_change()).has_value(); }));
+  EXPECT_TRUE(change->is_alive);
+  const Bytes key(change->bytes.begin(), change->bytes.begin() + 20);
+  // As long as it is asserted, it is alive.
+  for (int i = 0; i < 10; ++i) {
+    writer.assert_alive();
+    std::this_thread::sleep_for(100ms);
+  }
+  EXPECT_FALSE(reader.take_change());
+  ASSERT_TRUE(comes_true([&] { return (change = reader.take_change()).has_value(); }, 5s));
+  EXPECT_FALSE(change->is_alive);
+  EXPECT_EQ(change->bytes, key);
+  // The next word revives it.
+  writer.write(row);
+  ASSERT_TRUE(comes_true([&] { return (change = reader.take_change()).has_value(); }));
+  EXPECT_TRUE(change->is_alive);
+}
+
+/// The thread that sends rows goes on, but the loop of frames does not say that it lives.
+TEST_F(Dds, AWatchSeesALoopThatHangs) {
+  const live::FleetDomain domain{static_cast<std::uint32_t>(std::stoi(std::getenv("ROS_DOMAIN_ID"))) + 110,
+                                 ""};
+  const auto watch = live::fleet_watch(domain);
+  const auto sink = live::share_sink({"a", "00112233445566778899aabbccddeeff", rig(), domain});
+  const auto is_alive = [&] {
+    const live::FleetState state = watch->next(20ms);
+    return !state.agents.empty() && state.agents[0].is_alive;
+  };
+  sink->offer(live_frame());
+  EXPECT_TRUE(comes_true([&] {
+    sink->note_alive();
+    return is_alive();
+  }));
+  for (int i = 0; i < 60; ++i) {
+    sink->note_alive();
+    EXPECT_TRUE(is_alive());
+    std::this_thread::sleep_for(30ms);
+  }
+  const auto hung = std::chrono::steady_clock::now();
+  EXPECT_TRUE(comes_true([&] { return !is_alive(); }));
+  EXPECT_LT(std::chrono::steady_clock::now() - hung, 10s);
+  EXPECT_TRUE(comes_true([&] {
+    sink->note_alive();
+    return is_alive();
+  }));
+  const live::AgentState agent = watch->next(20ms).agents.at(0);
+  EXPECT_EQ(agent.role, "perception");
+  EXPECT_EQ(agent.name, "a");
+  EXPECT_EQ(static_cast<std::size_t>(agent.objects), live_frame()->step.frame.objects.list.size());
+  sink->finish();
+  EXPECT_TRUE(comes_true([&] {
+    const auto state = watch->next(20ms);
+    return !state.agents.at(0).is_alive && state.agents[0].message == "ended";
+  }));
+}
+
+/// Cyclone asks for the key of what comes from the network.
+TEST_F(Dds, ARowThatIsTooShortForItsKeyIsDropped) {
+  const Participant here;
+  const std::string topic = own_topic("short");
+  BytesReader reader(here, topic, topic_type<fleet::LandmarkRow>(), {.reliable = true});
+  BytesWriter writer(here, topic, topic_type<fleet::LandmarkRow>());
+  ASSERT_TRUE(comes_true([&] { return writer.has_reader(); }));
+  Bytes row = encode(row_of(1, 1, ""));
+  Bytes big = row;
+  big[1] = 0;  // big endian
+  for (Bytes bad : {Bytes{0, 1, 0, 0}, Bytes(row.begin(), row.begin() + 59), Bytes{}, big})
+    EXPECT_FALSE(writer.write(std::move(bad)));
+  EXPECT_TRUE(writer.write(row));
+  EXPECT_TRUE(comes_true([&] { return reader.take() == row; }));
 }
 
 TEST_F(Dds, WritersAnnounceTheirTypeHash) {
@@ -641,7 +821,7 @@ TEST_F(Dds, OtherSensorsEqualTheirRecordedMessages) {
   const std::string prefix = own_topic("sensors");
   Writer<Odometry> odometry(participant, prefix + "/odom");
   Writer<LaserScan> scan(participant, prefix + "/scan");
-  Writer<TFMessage> transforms(participant, "/tf_static", true);
+  Writer<TFMessage> transforms(participant, "/tf_static", {.latched = true});
   const TFMessage mounting = sensor_messages::transform("base_link", "optical", {0.3, 0, 0.8},
                                                         sensor_messages::kOpticalFromRobot_rad);
   transforms.write(mounting);  // before anyone listens

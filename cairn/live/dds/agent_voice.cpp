@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <unistd.h>
+
+#include <cairn/fleet/rows.hpp>
+#include <chrono>
+#include <random>
+
+#include <cairn/live/dds/agents.hpp>
+
+namespace cairn::live {
+namespace {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+fleet::MapId random_id() {
+  std::random_device device;
+  fleet::MapId id{};
+  for (std::uint8_t& byte : id) byte = static_cast<std::uint8_t>(device());
+  return id;
+}
+
+}  // namespace
+
+ros::Participant fleet_participant(const FleetDomain& domain) {
+  return ros::Participant(ros::domain_of_fleet(domain.id, domain.interface));
+}
+
+AgentVoice::AgentVoice(const ros::Participant& participant, const std::string& role, const std::string& name,
+                       const fleet::MapId& map_id)
+    : writer_(participant, fleet_topics::kAgents, fleet_topics::kAgentRow),
+      diagnostics_(participant, "/diagnostics") {
+  row.agent = random_id();
+  row.role = role;
+  row.name = name;
+  row.host = host_name();
+  row.process = ::getpid();
+  row.map_id = map_id;
+}
+
+void AgentVoice::send(ros::DiagnosticStatus status) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  row.stamp = ros::time_of({std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()});
+  row.level = std::to_integer<std::uint8_t>(status.level);
+  row.message = status.message;
+  writer_.write(row);
+  if (!diagnostics_.has_reader()) return;
+  status.hardware_id = row.host;
+  diagnostics_.write({{row.stamp, ""}, {std::move(status)}});
+}
+
+}  // namespace cairn::live
