@@ -31,6 +31,7 @@ struct AgentOptions {
   bool json_lines = false;
   bool once = false;
   double wait_s = 2;
+  bool has_wait = false;
   double duration_s = 0;
   std::vector<std::string> expected;
 };
@@ -53,6 +54,9 @@ bool is_over(const Deadline& deadline) {
 int keep_map(const AgentOptions& options) {
   if (options.file.empty()) throw Error("agent map: found no file, expected FILE.db");
   if (!options.forgotten.empty()) {
+    if (!options.places.empty()) throw Error("--at: found --forget as well, after which nothing is gathered");
+    if (options.duration_s != 0)
+      throw Error("--duration: found --forget as well, after which nothing is gathered");
     if (!live::forget_robot(options.file, options.forgotten))
       throw Error("--forget " + options.forgotten + ": " + options.file + " has no such robot");
     std::cout << options.file << ": robot " << options.forgotten << " forgotten\n";
@@ -77,7 +81,7 @@ int keep_map(const AgentOptions& options) {
     return is_over(deadline);
   };
   how.say = [&](const std::string& line) {
-    std::cerr << line << "\n";
+    std::cerr << on_one_line(line) << "\n";
     notice.status(line);
   };
   catch_interrupts();
@@ -91,7 +95,7 @@ int keep_map(const AgentOptions& options) {
 constexpr std::array kLevels{"ok", "warning", "error"};
 
 std::string state_of(const live::AgentState& agent) {
-  if (!agent.is_alive) return agent.message == "ended" ? "ended" : "SILENT";
+  if (!agent.is_alive) return agent.has_ended ? "ended" : "SILENT";
   return kLevels.at(static_cast<std::size_t>(std::clamp(agent.level, 0, 2)));
 }
 
@@ -127,9 +131,8 @@ Json json_of(const live::FleetState& state) {
       j["x_m"] = pose.translation_m.x;
       j["y_m"] = pose.translation_m.y;
       j["yaw_deg"] = std::atan2(pose.rotation[3], pose.rotation[0]) * 180 / std::numbers::pi;
-    } else {
-      j["refusal"] = robot.refusal;
     }
+    if (!robot.refusal.empty()) j["refusal"] = robot.refusal;
   }
   return {{"agents", std::move(agents)}, {"robots", std::move(robots)}, {"warnings", state.warnings}};
 }
@@ -176,7 +179,7 @@ std::vector<std::string> missing_of(const live::FleetState& state, const std::ve
   }
   for (const live::AgentState& agent : state.agents) {
     const bool is_expected = std::ranges::find(expected, agent.name) != expected.end();
-    const bool is_well = agent.is_alive ? agent.level < 2 : agent.message == "ended";
+    const bool is_well = agent.is_alive ? agent.level < 2 : agent.has_ended;
     if (!is_expected && !is_well) missing.push_back(agent.name);
   }
   return missing;
@@ -185,6 +188,8 @@ std::vector<std::string> missing_of(const live::FleetState& state, const std::ve
 int watch(const AgentOptions& options) {
   if (!(options.wait_s >= 0 && options.wait_s <= 3600))
     throw Error("--wait: found " + text_of("%g", options.wait_s) + ", expected s, 0 ... 3600");
+  if (!options.once && !options.expected.empty()) throw Error("--expect: needs --once");
+  if (!options.once && options.has_wait) throw Error("--wait: needs --once");
   if (options.once && options.duration_s != 0)
     throw Error("--duration: found --once as well, which ends by itself");
   const Deadline deadline = deadline_of(options.once ? options.wait_s : options.duration_s);
@@ -258,6 +263,7 @@ Work declare_agent(CLI::App& app) {
       ->capture_default_str();
   return [options, &app] {
     const bool is_map = options->action == "map";
+    options->has_wait = app.count("--wait") > 0;
     for (const char* const option : {"--json-lines", "--once", "--expect", "--wait"}) {
       if (is_map && app.count(option) > 0)
         throw Error(std::string(option) + ": is for agent watch, not for agent map");

@@ -30,14 +30,17 @@ void add_share_options(CLI::App& app, ShareInput& input) {
   input.domain = app.get_option("--fleet-domain");
 }
 
-std::unique_ptr<live::Sink> make_share_sink(const ShareInput& input, const std::string& map,
+std::unique_ptr<live::Sink> make_share_sink(const ShareInput& input, const SensorInput& sensors,
                                             const live::Runner& runner, const input::Sequence& source) {
   if (input.robot.empty()) {
     if (input.domain->count() > 0) throw Error("--fleet-domain: needs --share");
     if (!input.fleet.interface.empty()) throw Error("--fleet-interface: needs --share");
     return nullptr;
   }
-  if (map.empty()) throw Error("--share: needs --map FILE.db, whose landmarks it shares");
+  if (sensors.map.empty()) throw Error("--share: needs --map FILE.db, whose landmarks it shares");
+  if (sensors.map_read_only)
+    throw Error(
+        "--share: found --read-only as well, with which nothing tells this run's landmarks from another's");
   return live::share_map({input.robot, runner.map_id(), source.rig(), domain_of(input.fleet)});
 }
 

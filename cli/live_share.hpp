@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "follow_options.hpp"
+
 namespace CLI {
 class App;
 class Option;
@@ -34,7 +36,7 @@ struct ShareInput {
 };
 void add_share_options(CLI::App& app, ShareInput& input);
 /// Shares from now on; null without --share. Throws Error.
-std::unique_ptr<live::Sink> make_share_sink(const ShareInput& input, const std::string& map,
+std::unique_ptr<live::Sink> make_share_sink(const ShareInput& input, const SensorInput& sensors,
                                             const live::Runner& runner, const input::Sequence& source);
 
 }  // namespace cairn::cli

@@ -67,7 +67,7 @@ RunSinks::RunSinks(const RunOptions& options, live::Runner& runner, const input:
   runner.add(*recorder_);
   add(make_view(options.view, runner, *recorder_, source, preset));
   add(make_ros2_sink(options.ros2, source));
-  add(make_share_sink(options.share, options.sensors.map, runner, source));
+  add(make_share_sink(options.share, options.sensors, runner, source));
   add(std::make_unique<live::ServiceNotice>());
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cmath>
 #include <iterator>
 #include <type_traits>
 
@@ -29,6 +30,20 @@ std::string key_of(const SharedIdRow& row) {
   return "shared/" + std::to_string(row.id);
 }
 
+std::optional<Pose> pose_in(const ros::Pose& pose) {
+  const auto& [x, y, z] = pose.position;
+  const ros::Quaternion turn = pose.orientation;
+  const double length = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z + turn.w * turn.w;
+  if (!std::isfinite(x + y + z) || !(std::abs(length - 1) < 1e-3)) return std::nullopt;
+  return pose_of({x, y, z}, {turn.x, turn.y, turn.z, turn.w});
+}
+
+PlaceRow row_of(const Pose& pose, const MapId& map_id, const std::string& robot) {
+  const Point3 at = pose.translation_m;
+  const auto turn = quaternion(pose);
+  return {map_id, bytes_of(robot), {{at.x, at.y, at.z}, {turn[0], turn[1], turn[2], turn[3]}}};
+}
+
 template <class Row>
 std::string text_of(const Row& row) {
   const ros::Bytes bytes = ros::encode(row);
@@ -42,7 +57,8 @@ FleetBook::FleetBook(const std::map<std::string, std::string>& kept) {
     if (key.starts_with("landmark/")) restore<LandmarkRow>(value);
     if (key.starts_with("floor/")) restore<FloorRow>(value);
     if (key.starts_with("shared/")) restore<SharedIdRow>(value);
-    if (key == kOriginKey) restore<OriginRow>(value);
+    if (key.starts_with("place/") || key.starts_with("given/")) restore<PlaceRow>(value);
+    if (key == kOriginKey) origin_ = map_id_of(value);
     if (key == kNextKey) ids_.next = std::max<std::int64_t>(1, std::strtoll(value.c_str(), nullptr, 10));
   }
   // After the rows that it lists.
@@ -67,25 +83,36 @@ void FleetBook::restore(const std::string& bytes) {
         } const of{row.map_ids[i], row.robots[i]};
         ids_.ids[{robot_of(of), LandmarkId{row.landmarks[i]}}] = LandmarkId{row.id};
       }
-    } else if constexpr (std::is_same_v<Row, OriginRow>) {
-      const ros::Point at = row.map_from_robot.position;
-      const ros::Quaternion turn = row.map_from_robot.orientation;
-      origin_ = {row.map_id, pose_of({at.x, at.y, at.z}, {turn.x, turn.y, turn.z, turn.w})};
+    } else if constexpr (std::is_same_v<Row, PlaceRow>) {
+      const auto pose = pose_in(row.map_from_robot);
+      if (!pose) return;
+      const std::string name = robot_of(row).name;
+      if (name.empty()) {
+        places_[row.map_id] = *pose;
+      } else {
+        given_[name] = *pose;
+      }
     } else {
-      take(row);
+      add(row);
     }
   } catch (const Error&) {  // its robot sends it again
   }
 }
 
-FleetBook::Taken FleetBook::refuse(const RobotKey& robot, const std::string& why) {
+FleetBook::Outcome FleetBook::refuse(const RobotKey& sender, const std::string& why) {
+  RobotKey robot = sender;
+  try {
+    (void)checked_robot(robot.name, "");
+  } catch (const Error&) {  // foreign bytes are not repeated
+    robot = {};
+  }
   // Names are foreign, too: as many as robots are remembered.
   if (refused_.size() < kMostRobots || refused_.contains(robot)) {
     Refused& refused = refused_[robot];
     ++refused.rows;
     refused.why = why;
   }
-  return Taken::refused;
+  return Outcome::refused;
 }
 
 FleetBook::Robot* FleetBook::robot_for(const RobotKey& key) {
@@ -100,40 +127,41 @@ void FleetBook::note(const std::string& key, const Row& row) {
 }
 
 template <class Row, class Keyed, class Key, class Listed>
-FleetBook::Taken FleetBook::take_into(const Row& row, Robot& robot, Keyed& rows, const Key& key,
-                                      const Listed& listed) {
+FleetBook::Outcome FleetBook::add_to(const Row& row, Robot& robot, Keyed& rows, const Key& key,
+                                     const Listed& listed) {
   const auto known = rows.find(key);
-  if (known != rows.end() && known->second.version >= row.version) return Taken::known;
+  if (known != rows.end() && known->second.version >= row.version) return Outcome::known;
   // Of a landmark that is not in the map any more, but was when this was sent.
-  if (robot.index && row.version <= robot.index->version && !listed.contains(key)) return Taken::known;
+  if (robot.index && row.version <= robot.index->version && !listed.contains(key)) return Outcome::known;
   if (known == rows.end() && rows.size() >= kMostRows)
     return refuse(robot_of(row), "more than " + std::to_string(kMostRows) + " rows");
   rows.insert_or_assign(key, row);
   note(key_of(row), row);
-  return Taken::changed;
+  return Outcome::changed;
 }
 
-FleetBook::Taken FleetBook::take(const LandmarkRow& row) {
+FleetBook::Outcome FleetBook::add(const LandmarkRow& row) {
   if (const std::string fault = fault_of(row); !fault.empty()) return refuse(robot_of(row), fault);
   Robot* const robot = robot_for(robot_of(row));
   if (robot == nullptr) return refuse(robot_of(row), "more than " + std::to_string(kMostRobots) + " robots");
-  return take_into(row, *robot, robot->landmarks, row.id, robot->listed);
+  return add_to(row, *robot, robot->landmarks, row.id, robot->listed);
 }
 
-FleetBook::Taken FleetBook::take(const FloorRow& row) {
+FleetBook::Outcome FleetBook::add(const FloorRow& row) {
   if (const std::string fault = fault_of(row); !fault.empty()) return refuse(robot_of(row), fault);
   Robot* const robot = robot_for(robot_of(row));
   if (robot == nullptr) return refuse(robot_of(row), "more than " + std::to_string(kMostRobots) + " robots");
-  return take_into(row, *robot, robot->floor, std::pair(row.x, row.y), robot->listed_floor);
+  return add_to(row, *robot, robot->floor, std::pair(row.x, row.y), robot->listed_floor);
 }
 
-FleetBook::Taken FleetBook::take(const IndexRow& row) {
+FleetBook::Outcome FleetBook::add(const IndexRow& row) {
   if (const std::string fault = fault_of(row); !fault.empty()) return refuse(robot_of(row), fault);
   Robot* const robot = robot_for(robot_of(row));
   if (robot == nullptr) return refuse(robot_of(row), "more than " + std::to_string(kMostRobots) + " robots");
   if (row.landmarks.size() > kMostRows || row.tile_x.size() > kMostRows)
     return refuse(robot_of(row), "more than " + std::to_string(kMostRows) + " rows");
-  if (robot->index && robot->index->version >= row.version) return Taken::known;
+  if (robot->index && robot->index->version >= row.version)
+    return robot->index->version > row.version ? Outcome::older : Outcome::known;
   robot->index = row;
   robot->listed = {row.landmarks.begin(), row.landmarks.end()};
   robot->listed_floor.clear();
@@ -149,7 +177,7 @@ FleetBook::Taken FleetBook::take(const IndexRow& row) {
   };
   drop(robot->landmarks, robot->listed);
   drop(robot->floor, robot->listed_floor);
-  return Taken::changed;
+  return Outcome::changed;
 }
 
 std::vector<RobotMap> FleetBook::maps() const {
@@ -184,33 +212,69 @@ int FleetBook::forget(const std::string& name, const std::vector<PlacedRobot>& p
     at = robots_.erase(at);
     ++count;
   }
+  if (given_.erase(name) > 0) note_dropped("given/" + name);
   for (const auto& [key, robot] : robots_) gone.erase(key.map_id);  // of a copy
-  if (!origin_ || !gone.contains(origin_->map_id)) return count;
-  std::optional<Origin> next;
-  std::size_t most = 0;
-  for (const PlacedRobot& robot : placed) {
-    if (!robot.map_from_robot || !robots_.contains(robot.robot) || (next && robot.landmarks <= most))
-      continue;
-    next = {robot.robot.map_id, *robot.map_from_robot};
-    most = robot.landmarks;
+  for (const MapId& id : gone) {
+    if (places_.erase(id) > 0) note_dropped("place/" + digits_of(id));
   }
-  set_origin(next);
+  if (origin_ && !gone.contains(*origin_)) return count;
+  const bool has_given =
+      std::ranges::any_of(robots_, [&](const auto& robot) { return given_.contains(robot.first.name); });
+  const PlacedRobot* next = nullptr;
+  for (const PlacedRobot& robot : placed) {
+    if (robot.map_from_robot && robots_.contains(robot.robot) &&
+        (next == nullptr || robot.landmarks > next->landmarks))
+      next = &robot;
+  }
+  if (next != nullptr && !has_given) {
+    set_origin(next->robot.map_id, *next->map_from_robot);
+  } else {
+    set_origin(std::nullopt, {});
+  }
   return count;
 }
 
-void FleetBook::set_origin(const std::optional<Origin>& origin) {
-  origin_ = origin;
-  if (!origin) return note_dropped(kOriginKey);
-  const Point3 at = origin->map_from_robot.translation_m;
-  const auto turn = quaternion(origin->map_from_robot);
-  note(kOriginKey, OriginRow{origin->map_id, {{at.x, at.y, at.z}, {turn[0], turn[1], turn[2], turn[3]}}});
+void FleetBook::set_origin(const std::optional<MapId>& map_id, const Pose& map_from_robot) {
+  origin_ = map_id;
+  if (!map_id) return note_dropped(kOriginKey);
+  changes_[kOriginKey] = digits_of(*map_id);
+  places_[*map_id] = map_from_robot;
+  note("place/" + digits_of(*map_id), row_of(map_from_robot, *map_id, ""));
 }
 
-std::optional<Origin> FleetBook::origin(bool has_poses) {
-  if (!origin_ && !has_poses) {
-    if (const auto first = origin_of(maps())) set_origin(first);
+void FleetBook::give(const std::string& robot, const Pose& map_from_robot) {
+  given_[robot] = map_from_robot;
+  note("given/" + robot, row_of(map_from_robot, {}, robot));
+}
+
+Placements FleetBook::placements(const std::set<RobotKey>& former) {
+  if (!origin_ && given_.empty()) {
+    if (const auto first = origin_of(maps())) set_origin(first, {});
   }
-  return origin_;
+  Placements placements{{}, places_};
+  for (const auto& [key, robot] : robots_) {
+    const auto given = given_.find(key.name);
+    if (given != given_.end() && !former.contains(key))
+      placements.known.try_emplace(key.map_id, given->second);
+  }
+  if (origin_) placements.known.try_emplace(*origin_, places_[*origin_]);
+  return placements;
+}
+
+void FleetBook::set_places(const std::vector<PlacedRobot>& placed) {
+  constexpr double kSame_m = 0.01;
+  constexpr double kSame_rad = 0.002;
+  for (const PlacedRobot& robot : placed) {
+    const MapId& id = robot.robot.map_id;
+    if (!robot.map_from_robot || (origin_ && id == *origin_)) continue;
+    const auto known = places_.find(id);
+    if (known != places_.end()) {
+      const Pose apart = inverse(known->second) * *robot.map_from_robot;
+      if (length(apart.translation_m) < kSame_m && angle_of(apart) < kSame_rad) continue;
+    }
+    places_[id] = *robot.map_from_robot;
+    note("place/" + digits_of(id), row_of(*robot.map_from_robot, id, ""));
+  }
 }
 
 void FleetBook::set_ids(SharedIds ids) {
@@ -241,6 +305,15 @@ void FleetBook::set_ids(SharedIds ids) {
 
 std::map<std::string, std::optional<std::string>> FleetBook::changes() {
   return std::exchange(changes_, {});
+}
+
+FleetFile open_fleet_file(const std::filesystem::path& path) {
+  MapFile file = MapFile::open(path, MapMode::update);
+  const std::map<std::string, std::string> kept = file.kept();
+  // What an agent keeps replaces the landmarks of a file.
+  if (kept.empty() && (!file.load().list.empty() || !file.runs().empty()))
+    throw Error(path.string() + ": is the map of a robot, expected one of `cairn agent map`, or a new file");
+  return {std::move(file), FleetBook(kept)};
 }
 
 }  // namespace cairn::fleet

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include <cairn/fleet/shared_map.hpp>
+#include <cairn/sequence/map_file.hpp>
 
 namespace cairn::fleet {
 
@@ -22,13 +24,14 @@ class FleetBook {
   /// What changes() gave before; what is damaged is left out.
   explicit FleetBook(const std::map<std::string, std::string>& kept);
 
-  enum class Taken : std::uint8_t { changed, known, refused };
+  /// older: an index of before the one that is known, from a map that was restored from a copy.
+  enum class Outcome : std::uint8_t { changed, known, older, refused };
   /// A row from elsewhere: refused if it is not sound (fault_of()), or one too many.
-  Taken take(const LandmarkRow& row);
-  Taken take(const FloorRow& row);
-  Taken take(const IndexRow& row);
+  Outcome add(const LandmarkRow& row);
+  Outcome add(const FloorRow& row);
+  Outcome add(const IndexRow& row);
 
-  /// Rows that were refused, by robot, with the reason of the last one.
+  /// Rows that were refused, by robot, with the reason of the last one. A robot without a valid name has none.
   struct Refused {
     int rows = 0;
     std::string why;
@@ -37,12 +40,18 @@ class FleetBook {
 
   /// Every robot, by map and name.
   [[nodiscard]] std::vector<RobotMap> maps() const;
-  /// Forgets robots of this name; how many there were. `placed`: where all are; if the origin is forgotten, the map with
-  /// the most landmarks of those with a place becomes the origin, so that the shared map does not move.
+  /// Forgets robots of this name, and a place that was given for it; how many there were. `placed`: where all are; if no
+  /// known place is left, the map with the most landmarks keeps its place, so that the shared map does not move.
   int forget(const std::string& name, const std::vector<PlacedRobot>& placed);
 
-  /// Fixed by the first call after a robot has landmarks, unless poses are given.
-  std::optional<Origin> origin(bool has_poses);
+  /// Places that are given, by the name of a robot; they are kept.
+  void give(const std::string& robot, const Pose& map_from_robot);
+  [[nodiscard]] const std::map<std::string, Pose>& given() const { return given_; }
+  /// What is known of places. `former`: robots whose name belongs to another map now, which a given place does not
+  /// mean. Where no place is given, the first map with landmarks becomes the origin.
+  Placements placements(const std::set<RobotKey>& former = {});
+  /// Where robots are now.
+  void set_places(const std::vector<PlacedRobot>& placed);
 
   [[nodiscard]] const SharedIds& ids() const { return ids_; }
   void set_ids(SharedIds ids);
@@ -51,7 +60,7 @@ class FleetBook {
   std::map<std::string, std::optional<std::string>> changes();
 
   static constexpr std::size_t kMostRobots = 64;
-  static constexpr std::size_t kMostRows = 10'000;  // of landmarks, and as many of floor, of one robot
+  static constexpr std::size_t kMostRows = 100'000;  // of landmarks, and as many of floor, of one robot
 
  private:
   struct Robot {
@@ -62,22 +71,31 @@ class FleetBook {
     std::set<std::pair<int, int>> listed_floor;
   };
   template <class Row, class Keyed, class Key, class Listed>
-  Taken take_into(const Row& row, Robot& robot, Keyed& rows, const Key& key, const Listed& listed);
-  Taken refuse(const RobotKey& robot, const std::string& why);
+  Outcome add_to(const Row& row, Robot& robot, Keyed& rows, const Key& key, const Listed& listed);
+  Outcome refuse(const RobotKey& robot, const std::string& why);
   /// Null if there are too many.
   Robot* robot_for(const RobotKey& key);
   template <class Row>
   void restore(const std::string& bytes);
   template <class Row>
   void note(const std::string& key, const Row& row);
-  void set_origin(const std::optional<Origin>& origin);
+  void set_origin(const std::optional<MapId>& map_id, const Pose& map_from_robot);
   void note_dropped(const std::string& key) { changes_[key] = std::nullopt; }
 
   std::map<RobotKey, Robot> robots_;
   std::map<RobotKey, Refused> refused_;
-  std::optional<Origin> origin_;
+  std::optional<MapId> origin_;
+  std::map<MapId, Pose> places_;  // the last ones; that of the origin is fixed
+  std::map<std::string, Pose> given_;
   SharedIds ids_;
   std::map<std::string, std::optional<std::string>> changes_;
 };
+
+/// The file of a map agent, created if absent. Throws Error like MapFile::open(), and for the map of a robot.
+struct FleetFile {
+  MapFile file;
+  FleetBook book;
+};
+FleetFile open_fleet_file(const std::filesystem::path& path);
 
 }  // namespace cairn::fleet

@@ -10,7 +10,7 @@
 
 #include <cairn/ros/messages.hpp>
 
-/// What agents tell each other (docs/agents.md). kKeyMembers: so many leading members are the key of the DDS topic.
+/// The messages between agents (docs/agents.md). kKeyMembers: number of leading members that are the key of the DDS topic.
 namespace cairn::fleet {
 
 /// Of a map file and its copies.
@@ -161,6 +161,7 @@ struct AgentRow {
   ros::Time stamp;         // when it was sent, by the clock of its computer
   std::uint8_t level = 0;  // as in diagnostics: 0 ok, 1 warning, 2 error
   std::string message;
+  bool has_ended = false;  // in good order: its last word
   double rate_hz = 0;
   double reliability = -1;  // −1: unknown
   std::string weakest;      // witness of the reliability
@@ -179,6 +180,7 @@ struct AgentRow {
     visit("stamp", m.stamp);
     visit("level", m.level);
     visit("message", m.message);
+    visit("has_ended", m.has_ended);
     visit("rate_hz", m.rate_hz);
     visit("reliability", m.reliability);
     visit("weakest", m.weakest);
@@ -190,13 +192,15 @@ struct AgentRow {
   }
 };
 
-/// The map whose place in the shared one is fixed: kept in the file of a map agent.
-struct OriginRow {
-  static constexpr std::string_view kType = "cairn_msgs/msg/Origin";
-  MapId map_id{};
+/// Where a map is in the shared one: kept in the file of a map agent.
+struct PlaceRow {
+  static constexpr std::string_view kType = "cairn_msgs/msg/Place";
+  MapId map_id{};     // of a place that was found
+  NameBytes robot{};  // of a place that was given
   ros::Pose map_from_robot;
   static void each(auto& m, auto&& visit) {
     visit("map_id", m.map_id);
+    visit("robot", m.robot);
     visit("map_from_robot", m.map_from_robot);
   }
 };

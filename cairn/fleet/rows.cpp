@@ -14,6 +14,8 @@ namespace {
 constexpr double kFarthest_m = 10'000;
 constexpr double kLargest_m = 1000;
 constexpr double kLargestVariance_m2 = 1e6;
+constexpr double kLeastVariance_m2 = 1e-9;
+constexpr std::int32_t kMostFrames = 1 << 30;
 constexpr double kMostLogOdds = 5;
 constexpr std::size_t kLongestName = 64;
 constexpr std::size_t kMostLooks = 8;
@@ -22,7 +24,7 @@ constexpr std::size_t kRobotLength = std::tuple_size_v<NameBytes>;
 
 bool is_robot_name(const std::string& name) {
   const auto is_lower = [](char c) { return c >= 'a' && c <= 'z'; };
-  return !name.empty() && name.size() <= kRobotLength && is_lower(name[0]) &&
+  return !name.empty() && name.size() <= kRobotLength && name != "map" && is_lower(name[0]) &&
          std::ranges::all_of(name, [&](char c) { return is_lower(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
@@ -34,7 +36,7 @@ std::string robot_fault(const Row& row) {
   return is_filled_up && is_robot_name(name) ? "" : "the name of its robot";
 }
 
-/// Symmetric, and positive definite by its leading minors.
+/// Symmetric, and positive definite by its leading minors, with an inverse.
 bool is_covariance(const Covariance3& c) {
   for (const double value : c) {
     if (!(std::abs(value) <= kLargestVariance_m2)) return false;
@@ -47,7 +49,9 @@ bool is_covariance(const Covariance3& c) {
   const double minor = c[0] * c[4] - c[1] * c[3];
   const double all = c[0] * (c[4] * c[8] - c[5] * c[7]) - c[1] * (c[3] * c[8] - c[5] * c[6]) +
                      c[2] * (c[3] * c[7] - c[4] * c[6]);
-  return c[0] > 0 && minor > 0 && all > 0;
+  constexpr double kLeastShare = 1e-9;  // of the product of the variances: else the inverse is not finite
+  return std::min({c[0], c[4], c[8]}) >= kLeastVariance_m2 && minor > 0 &&
+         all > kLeastShare * c[0] * c[4] * c[8];
 }
 
 bool is_distribution(const float* from, const float* to) {
@@ -74,6 +78,11 @@ std::string look_fault(const std::vector<LookRow>& looks) {
       return "the colours of a look";
   }
   return "";
+}
+
+bool is_line(const std::string& text, std::size_t longest) {
+  return text.size() <= longest &&
+         std::ranges::none_of(text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; });
 }
 
 int floor_division(int value, int divisor) {
@@ -105,7 +114,7 @@ std::string digits_of(const MapId& id) {
 std::string checked_robot(const std::string& name, const std::string& option) {
   if (!is_robot_name(name)) {
     throw Error(option + ": found \"" + name + "\", expected up to " + std::to_string(kRobotLength) +
-                " of a-z, 0-9 and _, beginning with a letter");
+                " of a-z, 0-9 and _, beginning with a letter, and not map");
   }
   return name;
 }
@@ -119,9 +128,7 @@ NameBytes bytes_of(const std::string& robot) {
 std::string fault_of(const LandmarkRow& row) {
   if (std::string fault = robot_fault(row); !fault.empty()) return fault;
   if (row.id < 1 || row.id > kLastId) return "an id outside of 1 … 2^53";
-  if (row.name.size() > kLongestName ||
-      std::ranges::any_of(row.name, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }))
-    return "a name of more than 64 bytes, or with control characters";
+  if (!is_line(row.name, kLongestName)) return "a name of more than 64 bytes, or with control characters";
   for (const double at : {row.position.x, row.position.y, row.position.z}) {
     if (!(std::abs(at) <= kFarthest_m)) return "a position of more than 10 km";
   }
@@ -131,7 +138,9 @@ std::string fault_of(const LandmarkRow& row) {
   }
   if (!(std::abs(row.height_over_floor) <= kFarthest_m)) return "a height of more than 10 km";
   if (!(std::abs(row.log_odds) <= kMostLogOdds)) return "log-odds outside of -5 … 5";
-  if (row.seen < 0 || row.expected < 0 || row.seen_through < 0) return "a count below 0";
+  for (const std::int32_t count : {row.seen, row.expected, row.seen_through}) {
+    if (count < 0 || count > kMostFrames) return "a count outside of 0 … 2^30";
+  }
   if (!(row.open_share >= 0 && row.open_share <= 1)) return "a share outside of 0 … 1";
   return look_fault(row.looks);
 }
@@ -141,13 +150,29 @@ std::string fault_of(const FloorRow& row) {
   constexpr int kFarthest = static_cast<int>(kFarthest_m / (kFloorCell_m * FloorRow::kTile));
   if (std::abs(std::int64_t{row.x}) > kFarthest || std::abs(std::int64_t{row.y}) > kFarthest)
     return "a place of more than 10 km";
-  return std::ranges::any_of(row.frames, [](std::int32_t frames) { return frames < 0; }) ? "a count below 0"
-                                                                                         : "";
+  const auto is_wrong = [](std::int32_t frames) { return frames < 0 || frames > kMostFrames; };
+  return std::ranges::any_of(row.frames, is_wrong) ? "a count outside of 0 … 2^30" : "";
 }
 
 std::string fault_of(const IndexRow& row) {
   if (std::string fault = robot_fault(row); !fault.empty()) return fault;
   return row.tile_x.size() == row.tile_y.size() ? "" : "tiles without x or y";
+}
+
+std::string fault_of(const AgentRow& row) {
+  constexpr std::size_t kLongestLine = 256;
+  constexpr std::size_t kMostKnown = 256;
+  const bool is_map = row.role == "map" && row.name == "map";
+  if (!is_map && (row.role != "perception" || !is_robot_name(row.name))) return "its role or name";
+  for (const std::string* text : {&row.host, &row.message, &row.weakest}) {
+    if (!is_line(*text, kLongestLine)) return "a text of more than 256 bytes, or with control characters";
+  }
+  if (row.robots.size() > kMostKnown) return "more than 256 robots";
+  for (const KnownRobotRow& robot : row.robots) {
+    if (!is_robot_name(robot.name) || !is_line(robot.refusal, kLongestLine))
+      return "a robot without a valid name";
+  }
+  return row.level > 2 ? "a level of more than 2" : "";
 }
 
 LandmarkRow row_of(const Landmark& landmark, const RobotKey& robot, std::uint64_t version) {
@@ -229,9 +254,9 @@ std::vector<FloorCell> cells_of(const std::vector<FloorRow>& tiles) {
   for (const FloorRow& tile : tiles) {
     for (int i = 0; i < FloorRow::kTile * FloorRow::kTile; ++i) {
       const std::int32_t frames = tile.frames[static_cast<std::size_t>(i)];
-      if (frames > 0)
-        cells.push_back({tile.x * FloorRow::kTile + i % FloorRow::kTile,
-                         tile.y * FloorRow::kTile + i / FloorRow::kTile, frames});
+      if (frames == 0) continue;
+      cells.push_back({tile.x * FloorRow::kTile + i % FloorRow::kTile,
+                       tile.y * FloorRow::kTile + i / FloorRow::kTile, frames});
     }
   }
   std::ranges::sort(cells, {}, [](FloorCell cell) { return std::tuple(cell.x, cell.y); });
@@ -246,30 +271,31 @@ RowDifferences::Changes RowDifferences::next(const LandmarkMap& map) {
     now.version = before.version;
     return ros::encode(now) != ros::encode(before);
   };
+  /// Whether a row has left the map.
   const auto take = [&](auto& sent, auto now, auto& changed, const auto& key) {
-    bool is_other_list = sent.size() != now.size();
+    std::size_t still_there = 0;
     for (auto& row : now) {
       const auto before = std::ranges::lower_bound(sent, key(row), {}, key);
-      if (before == sent.end() || key(*before) != key(row)) {
-        is_other_list = true;
-        changed.push_back(row);
-      } else if (differs(row, *before)) {
-        changed.push_back(row);
-      } else {
+      const bool is_known = before != sent.end() && key(*before) == key(row);
+      still_there += is_known ? 1 : 0;
+      if (is_known && !differs(row, *before)) {
         row.version = before->version;
+      } else {
+        changed.push_back(row);
       }
     }
+    const bool has_left = still_there < sent.size();
     sent = std::move(now);
-    return is_other_list;
+    return has_left;
   };
   std::vector<LandmarkRow> landmarks;
   landmarks.reserve(map.list.size());
   for (const Landmark& landmark : map.list) landmarks.push_back(row_of(landmark, robot_, version));
-  const bool has_others = take(landmarks_, std::move(landmarks), changes.landmarks,
-                               [](const LandmarkRow& row) { return row.id; });
-  const bool has_other_floor = take(floor_, rows_of(map.floor, robot_, version), changes.floor,
-                                    [](const FloorRow& tile) { return std::tuple(tile.x, tile.y); });
-  if (has_others || has_other_floor || !has_sent_) {
+  const bool has_left = take(landmarks_, std::move(landmarks), changes.landmarks,
+                             [](const LandmarkRow& row) { return row.id; });
+  const bool has_floor_left = take(floor_, rows_of(map.floor, robot_, version), changes.floor,
+                                   [](const FloorRow& tile) { return std::tuple(tile.x, tile.y); });
+  if (has_left || has_floor_left || !has_sent_index_) {
     IndexRow& index = changes.index.emplace();
     index.map_id = robot_.map_id;
     index.robot = bytes_of(robot_.name);
@@ -279,10 +305,20 @@ RowDifferences::Changes RowDifferences::next(const LandmarkMap& map) {
       index.tile_x.push_back(tile.x);
       index.tile_y.push_back(tile.y);
     }
-    has_sent_ = true;
+    has_sent_index_ = true;
   }
   if (!changes.landmarks.empty() || !changes.floor.empty() || changes.index) version_ = version;
   return changes;
+}
+
+void RowDifferences::is_unsent(const LandmarkRow& row) {
+  std::erase_if(landmarks_, [&](const LandmarkRow& sent) { return sent.id == row.id; });
+  has_sent_index_ = false;  // it may leave the map before it is sent
+}
+
+void RowDifferences::is_unsent(const FloorRow& row) {
+  std::erase_if(floor_, [&](const FloorRow& sent) { return sent.x == row.x && sent.y == row.y; });
+  has_sent_index_ = false;
 }
 
 }  // namespace cairn::fleet

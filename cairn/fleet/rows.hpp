@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <optional>
 #include <string>
@@ -18,13 +19,14 @@ namespace cairn::fleet {
 struct RobotKey {
   MapId map_id{};
   std::string name;
-  friend auto operator<=>(const RobotKey&, const RobotKey&) = default;
+  friend auto operator<=>(const RobotKey&,
+                          const RobotKey&) = default;  // NOLINT(modernize-use-nullptr): its 0 is none
 };
 
 /// Of 32 hexadecimal digits (MapFile::map_id()); nullopt for anything else.
 std::optional<MapId> map_id_of(const std::string& digits);
 std::string digits_of(const MapId& id);
-/// Throws Error naming `option` unless it is [a-z][a-z0-9_]{0,31}.
+/// Throws Error naming `option` unless it is [a-z][a-z0-9_]{0,31}, and not "map", the name of map agents.
 std::string checked_robot(const std::string& name, const std::string& option);
 NameBytes bytes_of(const std::string& robot);
 
@@ -42,6 +44,7 @@ RobotKey robot_of(const Row& row) {
 std::string fault_of(const LandmarkRow& row);
 std::string fault_of(const FloorRow& row);
 std::string fault_of(const IndexRow& row);
+std::string fault_of(const AgentRow& row);
 
 /// Without its crop.
 LandmarkRow row_of(const Landmark& landmark, const RobotKey& robot, std::uint64_t version);
@@ -53,26 +56,31 @@ std::vector<FloorRow> rows_of(const std::vector<FloorCell>& floor, const RobotKe
 /// Those that are known to be free, by x, then y.
 std::vector<FloorCell> cells_of(const std::vector<FloorRow>& tiles);
 
-/// The rows of a map that differ from those sent before; sends each change once. For one robot.
+/// The rows of a robot's map that differ from those sent before.
 class RowDifferences {
  public:
-  /// `run`: of the map, so that versions grow from run to run.
-  RowDifferences(RobotKey robot, std::int64_t run)
-      : robot_(std::move(robot)), version_(static_cast<std::uint64_t>(run) << 32U) {}
+  explicit RowDifferences(RobotKey robot) : robot_(std::move(robot)) {}
+
+  /// Versions grow from run to run of the map file.
+  void begin_run(std::int64_t run) { version_ = std::max(version_, static_cast<std::uint64_t>(run) << 32U); }
 
   struct Changes {
     std::vector<LandmarkRow> landmarks;
     std::vector<FloorRow> floor;
-    std::optional<IndexRow> index;  // to be sent after them; nullopt: as before
+    std::optional<IndexRow> index;  // to be sent after them; nullopt: no row has left the map
   };
   Changes next(const LandmarkMap& map);
+  /// A row of next() that could not be sent: it comes again.
+  void is_unsent(const LandmarkRow& row);
+  void is_unsent(const FloorRow& row);
+  void is_unsent(const IndexRow& /*row*/) { has_sent_index_ = false; }
 
  private:
   RobotKey robot_;
-  std::uint64_t version_;
+  std::uint64_t version_ = 0;
   std::vector<LandmarkRow> landmarks_;  // as sent, by id
   std::vector<FloorRow> floor_;         // by x, then y
-  bool has_sent_ = false;
+  bool has_sent_index_ = false;
 };
 
 }  // namespace cairn::fleet

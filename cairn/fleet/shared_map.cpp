@@ -17,6 +17,7 @@ struct Copies {
   LandmarkMap map;
   std::map<LandmarkId, std::vector<OwnLandmark>> of;
   std::optional<Pose> place;
+  std::optional<Pose> guess;
 };
 
 std::vector<Copies> copies_of(const std::vector<RobotMap>& robots, const Placements& placements,
@@ -39,18 +40,21 @@ std::vector<Copies> copies_of(const std::vector<RobotMap>& robots, const Placeme
       for (const LandmarkPair& pair : merged.landmarks)
         copies.of[pair.landmark].push_back({robot, LandmarkId{number(pair.track)}});
     }
-    const auto given = placements.given.find(robot.name);
-    if (given != placements.given.end() && !copies.place) copies.place = given->second;
   }
+  const auto place_in = [](const std::map<MapId, Pose>& places, const MapId& id) {
+    const auto at = places.find(id);
+    return at == places.end() ? std::nullopt : std::optional(at->second);
+  };
   for (Copies& copies : all) {
-    if (!copies.place && placements.origin && placements.origin->map_id == copies.map_id)
-      copies.place = placements.origin->map_from_robot;
+    copies.place = place_in(placements.known, copies.map_id);
+    copies.guess = place_in(placements.last, copies.map_id);
   }
   return all;
 }
 
 /// Gives landmarks the ids that they had.
-SharedIds ids_for(std::vector<SharedLandmark>& landmarks, const SharedIds& before) {
+SharedIds ids_for(std::vector<SharedLandmark>& landmarks, const SharedIds& before,
+                  const std::set<OwnLandmark>& there) {
   SharedIds after{{}, before.next};
   std::set<LandmarkId> taken;
   for (SharedLandmark& landmark : landmarks) {
@@ -67,7 +71,9 @@ SharedIds ids_for(std::vector<SharedLandmark>& landmarks, const SharedIds& befor
     for (const OwnLandmark& own : landmark.of) after.ids[own] = landmark.id;
   }
   // Robots that are left out now keep theirs for later.
-  for (const auto& [own, id] : before.ids) after.ids.try_emplace(own, id);
+  for (const auto& [own, id] : before.ids) {
+    if (there.contains(own)) after.ids.try_emplace(own, id);
+  }
   return after;
 }
 
@@ -100,7 +106,7 @@ void find_parts(const LandmarkMap& map, std::vector<SharedLandmark>& landmarks) 
 
 }  // namespace
 
-std::optional<Origin> origin_of(const std::vector<RobotMap>& robots) {
+std::optional<MapId> origin_of(const std::vector<RobotMap>& robots) {
   const RobotMap* best = nullptr;
   for (const RobotMap& robot : robots) {
     if (robot.map.list.empty()) continue;
@@ -110,7 +116,7 @@ std::optional<Origin> origin_of(const std::vector<RobotMap>& robots) {
         (rank(robot).first == rank(*best).first && rank(robot).second < rank(*best).second);
     if (is_better) best = &robot;
   }
-  return best == nullptr ? std::nullopt : std::optional(Origin{best->robot.map_id, {}});
+  return best == nullptr ? std::nullopt : std::optional(best->robot.map_id);
 }
 
 SharedMap share(std::vector<RobotMap> robots, const Placements& placements, const SharedIds& before,
@@ -119,7 +125,7 @@ SharedMap share(std::vector<RobotMap> robots, const Placements& placements, cons
   std::vector<Copies> all = copies_of(robots, placements, config);
   std::vector<MapToMerge> maps;
   maps.reserve(all.size());
-  for (const Copies& copies : all) maps.push_back({copies.map, false, copies.place});
+  for (const Copies& copies : all) maps.push_back({copies.map, false, copies.place, copies.guess});
   MapsMerge merged = merge_all({}, maps, config);
 
   SharedMap shared;
@@ -141,7 +147,11 @@ SharedMap share(std::vector<RobotMap> robots, const Placements& placements, cons
     shared.landmarks.push_back(std::move(by_id[landmark.id]));
     std::ranges::sort(shared.landmarks.back().of);
   }
-  shared.ids = ids_for(shared.landmarks, before);
+  std::set<OwnLandmark> there;
+  for (const RobotMap& robot : robots) {
+    for (const Landmark& landmark : robot.map.list) there.insert({robot.robot, landmark.id});
+  }
+  shared.ids = ids_for(shared.landmarks, before, there);
   find_parts(shared.map, shared.landmarks);
   for (std::size_t i = 0; i < shared.landmarks.size(); ++i) shared.map.list[i].id = shared.landmarks[i].id;
   std::ranges::sort(shared.map.list, {}, &Landmark::id);

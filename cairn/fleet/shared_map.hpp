@@ -18,25 +18,21 @@ struct RobotMap {
   LandmarkMap map;
 };
 
-/// The map from which the others are placed. Its frame is that of the shared map, unless the robot with which it began
-/// was forgotten.
-struct Origin {
-  MapId map_id{};
-  Pose map_from_robot;
-};
-/// Where the maps of robots are known to be in the shared one.
+/// Where maps are in the shared one.
 struct Placements {
-  std::map<std::string, Pose> given;  // by the name of the robot
-  std::optional<Origin> origin;
+  std::map<MapId, Pose> known;
+  std::map<MapId, Pose> last;  // where others were before: fewer landmarks confirm these
 };
-/// The first origin where no pose is given: the map with the most landmarks; nullopt if none has any.
-std::optional<Origin> origin_of(const std::vector<RobotMap>& robots);
+/// The map whose frame becomes that of the shared one where no place is known: the one with the most landmarks; nullopt if
+/// none has any.
+std::optional<MapId> origin_of(const std::vector<RobotMap>& robots);
 
 /// A landmark of a robot's own map.
 struct OwnLandmark {
   RobotKey robot;
   LandmarkId id = LandmarkId::none;
-  friend auto operator<=>(const OwnLandmark&, const OwnLandmark&) = default;
+  friend auto operator<=>(const OwnLandmark&,
+                          const OwnLandmark&) = default;  // NOLINT(modernize-use-nullptr): its 0 is none
 };
 /// The landmarks of the shared map by those that they are made of. A landmark keeps its id as long as one of them is
 /// in it; an id is not used again.
@@ -70,7 +66,8 @@ struct SharedMap {
 
 /// Merges the maps of robots: a function of its arguments alone, so the order in which maps grew does not matter. Copies
 /// of one map are merged first (merge_copies()); then all as merge_all() does, so the result is that of `cairn map merge`
-/// but for ids and crops. A robot whose place is unknown is left out. `before`: the ids of the last result.
+/// but for ids and crops. A robot whose place is unknown is left out. `before`: the ids of the last result; those of what is
+/// no longer in a robot's map are dropped.
 SharedMap share(std::vector<RobotMap> robots, const Placements& placements, const SharedIds& before,
                 const LandmarksConfig& config);
 

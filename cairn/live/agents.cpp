@@ -27,11 +27,9 @@ std::unique_ptr<FleetWatch> watch_fleet(const FleetDomain& domain) {
 
 bool forget_robot(const std::filesystem::path& path, const std::string& robot) {
   if (!std::filesystem::exists(path)) throw Error(path.string() + ": no such file");
-  MapFile file = MapFile::open(path, MapMode::update);
-  fleet::FleetBook book(file.kept());
-  const LandmarksConfig config;
-  const auto shared_map = [&] {
-    return fleet::share(book.maps(), {{}, book.origin(true)}, book.ids(), config);
+  auto [file, book] = fleet::open_fleet_file(path);
+  const auto shared_map = [&book = book] {
+    return fleet::share(book.maps(), book.placements(), book.ids(), LandmarksConfig{});
   };
   if (book.forget(robot, shared_map().robots) == 0) return false;
   fleet::SharedMap shared = shared_map();

@@ -44,7 +44,7 @@ struct MapAgentOptions {
 /// Throws Error.
 void run_map_agent(const MapAgentOptions& options);
 /// Removes a robot from the file of a map agent that does not run; false if it knows none of this name. Throws Error.
-bool forget_robot(const std::filesystem::path& file, const std::string& robot);
+bool forget_robot(const std::filesystem::path& path, const std::string& robot);
 
 /// A robot or a map agent, as seen by a watch.
 struct AgentState {
@@ -53,8 +53,9 @@ struct AgentState {
   std::string host;
   int process = 0;
   bool is_alive = true;
-  double silent_s = 0;  // since its last word
-  int level = 0;        // as in diagnostics: 0 ok, 1 warning, 2 error
+  bool has_ended = false;  // in good order
+  double silent_s = 0;     // since its last word
+  int level = 0;           // as in diagnostics: 0 ok, 1 warning, 2 error
   std::string message;
   double rate_hz = 0;
   double reliability = -1;  // −1: unknown

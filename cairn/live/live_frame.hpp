@@ -95,8 +95,8 @@ class Sink {
   Sink(const Sink&) = delete;
   Sink& operator=(const Sink&) = delete;
   virtual void offer(const LiveFramePtr& frame) = 0;
-  /// The loop is alive: called after each stage of a frame, and every 50 ms or so while it waits for a pair; by several
-  /// threads.
+  /// The loop is alive: called after each stage of a frame, and every 50 ms or so while it waits for a pair, but for one of
+  /// a source whose every frame counts; by several threads.
   virtual void note_alive() {}
   /// For a sink that wants the map: about once a second, and at the end of the run. `run`: see LandmarksState.
   [[nodiscard]] virtual bool wants_map() const { return false; }

@@ -222,6 +222,7 @@ void Runner::wait_for_its_time(const input::SequenceFrame& pair) {
   bool was_paused = false;
   while (is_paused_ && !is_over()) {
     was_paused = true;
+    if (options_.every_frame) note_alive();
     std::uint64_t left = steps_;
     if (left > 0 && steps_.compare_exchange_strong(left, left - 1)) break;
     std::this_thread::sleep_for(10ms);

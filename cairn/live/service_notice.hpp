@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cairn/core/error.hpp>
 #include <chrono>
 #include <string>
 
@@ -21,7 +22,7 @@ class ServiceNotice : public Sink {
   /// WATCHDOG=1, at most five times a second.
   void note_alive() override;
   /// STATUS=…; one line.
-  void status(const std::string& text) const { send("STATUS=" + text); }
+  void status(const std::string& text) const { send("STATUS=" + on_one_line(text)); }
 
   /// As a sink: ready with the first frame, a status every second.
   void offer(const LiveFramePtr& frame) override;

@@ -94,9 +94,8 @@ Detection3D detection_of(const Header& header, const std::string& id, Point3 at,
   ObjectHypothesisWithPose result;
   result.hypothesis = {"object", score};
   result.pose.pose = found.bbox.center;
-  for (std::size_t row = 0; row < 3; ++row)
-    std::copy_n(covariance.begin() + static_cast<std::ptrdiff_t>(3 * row), 3,
-                result.pose.covariance.begin() + static_cast<std::ptrdiff_t>(6 * row));
+  for (std::ptrdiff_t row = 0; row < 3; ++row)
+    std::copy_n(covariance.begin() + 3 * row, 3, result.pose.covariance.begin() + 6 * row);
   found.results.push_back(std::move(result));
   return found;
 }

@@ -313,12 +313,12 @@ struct PlacedMap {
   std::vector<LandmarkPair> landmarks = {};  // the same of every landmark of the other map, paired or added
 };
 /// `other` transformed into the frame of `map` by relocation, recognised landmarks merged, the others added.
-/// `map_from_other`: the transform, if known.
+/// `map_from_other`: the transform, if known. `guess`: a probable one, see relocate().
 struct MapMerge : PlacedMap {
   LandmarkMap map;
 };
 MapMerge merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
-               const LandmarksConfig& config);
+               const LandmarksConfig& config, const std::optional<Pose>& guess = std::nullopt);
 /// The same for two copies of one map: landmarks that existed when it was copied are paired by id, and the
 /// newer record is kept (by run, then by last detection); landmarks added since are recognised or added.
 MapMerge merge_copies(LandmarkMap map, const LandmarkMap& other, const LandmarksConfig& config);
@@ -327,6 +327,7 @@ struct MapToMerge {
   LandmarkMap map;
   bool is_copy = false;                     // of the map that it is merged into: then its pose is that map's
   std::optional<Pose> map_from_other = {};  // if known
+  std::optional<Pose> guess = {};           // where it was before: fewer landmarks confirm it
 };
 struct MapsMerge {
   LandmarkMap map;

@@ -249,6 +249,7 @@ struct MapFile::Store {
   std::optional<Pose> map_from_odom;
   std::map<LandmarkId, StoredLandmark> stored;
   std::vector<FloorCell> stored_floor;
+  bool knows_kept_map = false;  // `stored` and `stored_floor` are those of the last keep()
   struct ThinningRule {
     int every = 1;
     int met = 0;
@@ -843,6 +844,7 @@ std::int64_t MapFile::begin_run(const std::string& source, Stamp began) {
   return store_->guarded([&] {
     Store& s = *store_;
     const LandmarkMap map = load();
+    s.knows_kept_map = false;
     s.stored.clear();
     for (const Landmark& landmark : map.list) s.stored[landmark.id] = stored_of(landmark);
     s.stored_floor = map.floor;
@@ -917,18 +919,22 @@ void MapFile::replace(const LandmarkMap& map) {
 void MapFile::keep(const std::map<std::string, std::optional<std::string>>& changes, const LandmarkMap& map) {
   store_->guarded([&] {
     Store& s = *store_;
-    const LandmarkMap before = load();
-    s.stored.clear();
-    for (const Landmark& landmark : before.list) s.stored[landmark.id] = {-1e9, -1, -1, false, {}, {}, {}};
-    s.stored_floor.clear();
+    if (!s.knows_kept_map) {
+      const LandmarkMap before = load();
+      s.stored.clear();
+      for (const Landmark& landmark : before.list) s.stored[landmark.id] = {-1e9, -1, -1, false, {}, {}, {}};
+      s.stored_floor.clear();
+    }
     try {
       s.begin();
-      s.database->exec("DELETE FROM floor");
+      if (!s.knows_kept_map) s.database->exec("DELETE FROM floor");
+      s.knows_kept_map = false;
       s.store(map);
       s.database->exec("DELETE FROM event WHERE landmark > 0 AND landmark NOT IN (SELECT id FROM landmark)");
       s.store_kept(changes);
       s.database->exec("COMMIT");
       s.is_open = false;
+      s.knows_kept_map = true;
     } catch (...) {
       s.rollback();
       throw;

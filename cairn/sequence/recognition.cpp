@@ -723,8 +723,11 @@ MapMerge unite(LandmarkMap map, const LandmarkMap& other, const Recognition& fou
     known.size.widest_m = std::max(known.size.widest_m, here.size.widest_m);
     known.size.height_m = std::max(known.size.height_m, here.size.height_m);
     add_looks(known, here.looks);
-    known.seen += here.seen;
-    known.expected += here.expected;
+    const auto sum = [](int ours, int theirs) {
+      return ours + std::min(theirs, std::numeric_limits<int>::max() - ours);
+    };
+    known.seen = sum(known.seen, here.seen);
+    known.expected = sum(known.expected, here.expected);
     known.log_odds = std::clamp(known.log_odds + here.log_odds, -5.0, 5.0);
     known.is_gone = known.is_gone && known.log_odds < 0;
     // Stamps of different runs are not comparable: first, last and run remain those of this map.
@@ -736,11 +739,27 @@ MapMerge unite(LandmarkMap map, const LandmarkMap& other, const Recognition& fou
 
 }  // namespace
 
+namespace {
+
+/// A place that was right a little while ago.
+std::optional<MapLocation> around(const std::optional<Pose>& pose) {
+  if (!pose) return std::nullopt;
+  constexpr double kSigma_m = 0.15;
+  constexpr double kSigma_rad = 0.05;
+  MapLocation location;
+  location.map_from_odom = *pose;
+  for (const std::size_t i : {0U, 5U, 10U}) location.covariance[i] = kSigma_m * kSigma_m;
+  location.covariance[15] = kSigma_rad * kSigma_rad;
+  return location;
+}
+
+}  // namespace
+
 MapMerge merge(LandmarkMap map, const LandmarkMap& other, const std::optional<Pose>& map_from_other,
-               const LandmarksConfig& config) {
+               const LandmarksConfig& config, const std::optional<Pose>& guess) {
   const std::vector<Candidate> candidates = candidates_of(other);
   const Recognition found = map_from_other ? recognise(map, candidates, {*map_from_other, {}, {}}, {}, config)
-                                           : placed(map, candidates, config, std::nullopt, &other);
+                                           : placed(map, candidates, config, around(guess), &other);
   const std::optional<Pose> pose = map_from_other ? map_from_other : found.map_from_odom;
   if (pose) return unite(std::move(map), other, found, *pose);
   return {{std::nullopt, found.pairs, found.refusal}, std::move(map)};
@@ -804,7 +823,7 @@ MapsMerge merge_all(LandmarkMap map, const std::vector<MapToMerge>& others, cons
   });
   // One that finds no place may find one once others are there.
   for (std::size_t i = 0; i < left.size();) {
-    add(left[i], merge(std::move(all.map), others[left[i]].map, std::nullopt, config));
+    add(left[i], merge(std::move(all.map), others[left[i]].map, std::nullopt, config, others[left[i]].guess));
     if (!all.placed[left[i]].map_from_other) {
       ++i;
       continue;

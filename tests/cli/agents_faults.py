@@ -238,6 +238,26 @@ def false_alarms(cairn, source, table, full):
         fleet.close()
 
 
+def keys(cairn, root, source, table):
+    """Agents with certificates see each other, and one without sees nobody."""
+    if shutil.which("openssl") is None:
+        return
+    with tempfile.TemporaryDirectory() as place:
+        fleet = Fleet(cairn, pathlib.Path(place))
+        run(f"{root}/packaging/dds/fleet_keys.sh", fleet.folder / "keys", 40, "a", "map", "watch")
+        settings = {name: {"CYCLONEDDS_URI": f"file://{fleet.folder}/keys/{name}/cyclonedds.xml"} for name in ("a", "map", "watch")}
+        fleet.map(HERE, **settings["map"])
+        fleet.robot("a", THERE, source, **settings["a"])
+        seen = [subprocess.run(["ip", "netns", "exec", HERE, cairn, "agent", "watch", "--once", "--wait", "10", "--json-lines",
+                                "--expect", "a", "--expect", "map", "--fleet-interface", "here0"], check=False,
+                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=dict(os.environ, **more)).stdout
+                for more in (settings["watch"], {})]
+        with_key, without = (len(json.loads(text)["agents"]) for text in seen)
+        table.row("agents that a watch sees with a certificate; without", f"{with_key}; {without}", "2; 0",
+                  (with_key, without) == (2, 0))
+        fleet.close()
+
+
 def cost(cairn, source, table):
     """Processor time of a run with and without sharing, in turn; a map agent and a watch listen."""
     def seconds_of(folder, *more):
@@ -282,6 +302,7 @@ def main():
             print("| what | found | asked |\n|---|---|---|")
             faults(cairn, source, table, full)
             many_rows(cairn, source, table)
+            keys(cairn, root, source, table)
             false_alarms(cairn, source, table, full)
             cost(cairn, source, table)
     except subprocess.CalledProcessError as error:

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/fleet/fleet_book.hpp>
 #include <cairn/fleet/shared_map.hpp>
+#include <cairn/live/dds/agents.hpp>
 #include <cairn/ros/dds/participant.hpp>
 #include <cairn/sequence/map_file.hpp>
 #include <chrono>
@@ -132,13 +133,12 @@ class Agents : public CommandTest {
     const MapFile fleet = MapFile::open(at("fleet.db"), MapMode::read_only);
     EXPECT_TRUE(fleet.check().empty());
     const LandmarkMap shared = fleet.load();
-    const fleet::FleetBook book(fleet.kept());
     std::map<std::string, LandmarkMap> own;
     for (const char* const name : {"a", "b"})
       own[name] = MapFile::open(at(std::string(name) + ".db"), MapMode::read_only).load();
     const bool is_a_first = [&] {
       const std::string id = MapFile::open(at("a.db"), MapMode::read_only).map_id();
-      return fleet::digits_of(fleet::FleetBook(fleet.kept()).origin(true)->map_id) == id;
+      return fleet.kept().at("origin") == id;
     }();
     MapsMerge merged = merge_all(own[is_a_first ? "a" : "b"], {{own[is_a_first ? "b" : "a"], false, {}}}, {});
     ASSERT_EQ(shared.list.size(), room_.size());
@@ -274,6 +274,66 @@ TEST_F(Agents, ARobotInAnotherPlaceIsUnknownUnlessItsPoseIsGiven) {
   refuses({"agent", "map", path("fleet.db"), "--forget", "c"}, {"--forget c", "no such robot"});
 }
 
+TEST_F(Agents, AMapAgentThatWasStoppedMissesNothing) {
+  const ProcessPtr watching = watch();
+  const ProcessPtr map = map_agent();
+  const auto sink = live::share_sink(
+      {"a", "00112233445566778899aabbccddeeff", {}, {static_cast<std::uint32_t>(std::stoi(domain())), ""}});
+  const auto known = [&] {
+    const Json now = seen();
+    for (const Json& one : now.value("robots", Json::array())) return one["landmarks"].get<int>();
+    return 0;
+  };
+  std::vector<Landmark> large = room_of(300, 5);
+  for (Landmark& landmark : large) {
+    landmark.looks.resize(8, landmark.looks[0]);
+    for (int octant = 0; octant < 8; ++octant)
+      landmark.looks[static_cast<std::size_t>(octant)].octant = octant;
+  }
+  const auto offer = [&](std::size_t count) {
+    sink->offer_map(std::make_shared<const LandmarkMap>(map_of(large, 0, count, {})), 1);
+  };
+  offer(5);
+  ASSERT_TRUE(comes_true([&] { return known() == 5; }, kLimit)) << content(at("map.err"));
+  map->signal(SIGSTOP);
+  for (std::size_t count = 50; count <= large.size(); count += 50) {
+    offer(count);
+    std::this_thread::sleep_for(400ms);
+  }
+  map->signal(SIGCONT);
+  EXPECT_TRUE(comes_true([&] { return known() == 300; }, kLimit)) << known();
+  sink->finish();
+}
+
+TEST_F(Agents, ADeletedMapFileMakesANewRobotOfThatName) {
+  write_two_maps();
+  const ProcessPtr watching = watch();
+  const ProcessPtr map = map_agent({"--at", "a=3,0,0"});
+  {
+    const ProcessPtr a = robot("a");
+    ASSERT_TRUE(comes_true([&] { return located() == 1; }, kLimit)) << content(at("map.err"));
+    a->end(SIGTERM);
+  }
+  for (const char* const file : {"a.db", "a.db-wal", "a.db-shm"}) fs::remove(at(file));
+  write_map("a", map_of(room_of(10, 88), 0, 10, {}));
+  const ProcessPtr a = robot("a");
+  const auto states = [&] {
+    std::vector<std::string> all;
+    const Json now = seen();
+    for (const Json& one : now.value("robots", Json::array()))
+      all.push_back(one["located"].get<bool>() ? "at " + std::to_string(std::lround(one["x_m"].get<double>()))
+                                               : one.value("refusal", ""));
+    std::ranges::sort(all);
+    return all;
+  };
+  EXPECT_TRUE(comes_true(
+      [&] {
+        return states() == std::vector<std::string>{"a former map of this robot", "at 3"};
+      },
+      kLimit))
+      << seen().dump(1);
+}
+
 TEST_F(Agents, NothingIsSharedUnlessItIsAskedFor) {
   const auto sockets_of = [](const Process& process) {
     int count = 0;
@@ -297,6 +357,10 @@ TEST_F(Agents, NothingIsSharedUnlessItIsAskedFor) {
 TEST_F(Agents, RefuseBadOptions) {
   const std::string source = CAIRN_SOURCE_DIR "/data/sequences/rolling_ball";
   refuses({"live", source, "--share", "a"}, {"--share", "--map"});
+  refuses({"live", source, "--share", "a", "--map", path("none.db"), "--read-only"}, {"none.db"});
+  refuses({"agent", "watch", "--expect", "a"}, {"--expect", "--once"});
+  refuses({"agent", "watch", "--wait", "3"}, {"--wait", "--once"});
+  refuses({"agent", "map", path("f.db"), "--forget", "a", "--at", "a=1,2,3"}, {"--at", "--forget"});
   refuses({"live", source, "--fleet-domain", "3"}, {"--fleet-domain", "--share"});
   refuses({"live", source, "--fleet-interface", "lo"}, {"--fleet-interface", "--share"});
   write_map("a", map_of(room_, 0, 4, {}));
@@ -304,6 +368,9 @@ TEST_F(Agents, RefuseBadOptions) {
   refuses({"live", source, "--map", map, "--share", "Robot A"}, {"--share", "Robot A"});
   refuses({"live", source, "--map", map, "--share", "a", "--fleet-domain", "233"},
           {"fleet domain", "233", "232"});
+  refuses({"live", source, "--map", map, "--read-only", "--share", "a"}, {"--share", "--read-only"});
+  refuses({"agent", "map", map}, {"a.db", "is the map of a robot"});
+  EXPECT_EQ(MapFile::open(map, MapMode::read_only).load().list.size(), 4U);
   refuses({"agent", "map"}, {"FILE"});
   refuses({"agent", "watch", "x.db"}, {"FILE", "agent map"});
   refuses({"agent", "watch", "--at", "a=1,2,3"}, {"--at", "agent map"});

@@ -428,7 +428,7 @@ bool fleet_rows(std::string_view bytes) {
   bool taken = false;
   const auto take = [&]<class Row>(const Row*, std::string_view row) {
     taken |= is_taken([&] {
-      (void)book.take(ros::decode<Row>({reinterpret_cast<const std::uint8_t*>(row.data()), row.size()}));
+      (void)book.add(ros::decode<Row>({reinterpret_cast<const std::uint8_t*>(row.data()), row.size()}));
     });
   };
   while (bytes.size() >= 5) {
@@ -445,12 +445,21 @@ bool fleet_rows(std::string_view bytes) {
         (void)ros::decode<fleet::AgentRow>({reinterpret_cast<const std::uint8_t*>(row.data()), row.size()});
       });
   }
-  const fleet::SharedMap shared =
-      fleet::share(book.maps(), {{}, book.origin(false)}, book.ids(), LandmarksConfig{});
+  const fleet::SharedMap shared = fleet::share(book.maps(), book.placements(), book.ids(), LandmarksConfig{});
   book.set_ids(shared.ids);
+  book.set_places(shared.robots);
   std::map<std::string, std::string> kept;
-  for (const auto& [key, value] : book.changes()) kept[key] = value.value_or("");
+  const auto changes = book.changes();
+  for (const auto& [key, value] : changes) kept[key] = value.value_or("");
   (void)fleet::FleetBook(kept);
+  // Whatever was taken can be written, and read again.
+  static const Place place;
+  const fs::path path = place.path() / "fleet.db";
+  fs::remove(path);
+  MapFile file = MapFile::open(path, MapMode::update);
+  file.keep(changes, shared.map);
+  file.keep({}, shared.map);
+  if (file.load().list.size() != shared.map.list.size()) std::abort();
   return taken;
 }
 std::vector<std::string> fleet_row_bytes() {

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <unistd.h>
 
+#include <algorithm>
+#include <cairn/core/error.hpp>
 #include <cairn/fleet/rows.hpp>
 #include <chrono>
 #include <random>
@@ -39,6 +41,23 @@ AgentVoice::AgentVoice(const ros::Participant& participant, const std::string& r
   row.host = host_name();
   row.process = ::getpid();
   row.map_id = map_id;
+}
+
+fleet::MapId agent_of(const ros::Bytes& row) {
+  constexpr std::size_t kHeader = 4;
+  fleet::MapId agent{};
+  if (row.size() < kHeader + agent.size()) throw Error("a row of an agent without its key");
+  std::copy_n(row.begin() + kHeader, agent.size(), agent.begin());
+  return agent;
+}
+
+void AgentVoice::end(ros::DiagnosticStatus status) {
+  constexpr auto kPatience = std::chrono::seconds(1);
+  row.has_ended = true;
+  status.level = ros::DiagnosticStatus::kOk;
+  status.message = "ended";
+  send(std::move(status));
+  if (writer_.has_reader()) writer_.wait_for_readers(kPatience);
 }
 
 void AgentVoice::send(ros::DiagnosticStatus status) {

@@ -33,14 +33,16 @@ inline constexpr ros::WriterQos kLastEvents{.latched = true, .depth = 100};
 /// After which an agent that says nothing counts as not alive. On a loaded computer, a process may sleep for a quarter
 /// of it.
 inline constexpr std::chrono::nanoseconds kLease = std::chrono::seconds(1);
-inline constexpr ros::WriterQos kAgentRow{.latched = true, .depth = 1, .lease = kLease};
+/// Not latched: the last row of one that hangs would say that it is well.
+inline constexpr ros::WriterQos kAgentRow{.depth = 1, .lease = kLease};
+inline constexpr ros::ReaderQos kReadAgents{.reliable = true, .depth = 1};
 
 }  // namespace fleet_topics
 
-/// The last message of an agent that ends in good order.
-inline constexpr const char* kEnded = "ended";
-
 ros::Participant fleet_participant(const FleetDomain& domain);
+
+/// The key of a row of an agent. Throws Error if there is none.
+fleet::MapId agent_of(const ros::Bytes& row);
 
 /// The row of an agent, which says once a second how it is, also as /diagnostics for people.
 class AgentVoice {
@@ -53,6 +55,8 @@ class AgentVoice {
   fleet::AgentRow row;
   /// Sends the row and the status with the present time.
   void send(ros::DiagnosticStatus status);
+  /// The last word: the agent ends in good order. Waits until others have it, for a second at most.
+  void end(ros::DiagnosticStatus status);
 
  private:
   ros::Writer<fleet::AgentRow> writer_;

@@ -32,7 +32,7 @@ class Watch : public FleetWatch {
  public:
   explicit Watch(const FleetDomain& domain)
       : participant_(fleet_participant(domain)),
-        reader_(participant_, topics::kAgents, topics::kReadRows),
+        reader_(participant_, topics::kAgents, topics::kReadAgents),
         wait_(participant_, {&reader_}) {}
 
   FleetState next(std::chrono::milliseconds timeout) override {
@@ -51,42 +51,43 @@ class Watch : public FleetWatch {
 
   void take() {
     while (const auto change = reader_.take_change()) {
-      fleet::MapId agent{};
-      if (change->bytes.size() < 4 + agent.size()) continue;
-      std::copy_n(change->bytes.begin() + 4, agent.size(), agent.begin());
-      const auto known = agents_.find(agent);
-      if (!change->is_alive) {
-        if (known != agents_.end()) known->second.is_alive = false;
-        continue;
-      }
-      if (known == agents_.end() && agents_.size() >= kMostAgents) continue;
       try {
-        hear(agent, ros::decode<fleet::AgentRow>(change->bytes));
+        const fleet::MapId id = agent_of(change->bytes);
+        if (change->has_message) hear(id, ros::decode<fleet::AgentRow>(change->bytes));
+        const auto known = agents_.find(id);
+        if (change->is_alive || known == agents_.end()) continue;
+        known->second.is_alive = false;
+        drop_former(known->second.row);
       } catch (const Error&) {  // of another cairn
       }
     }
   }
 
+  /// An agent that is not alive while another of its name is: the former one of it, which was started again.
+  void drop_former(const fleet::AgentRow& row) {
+    const auto is_of_it = [&](const auto& one) {
+      return one.second.row.role == row.role && one.second.row.name == row.name;
+    };
+    const bool is_there =
+        std::ranges::any_of(agents_, [&](const auto& one) { return is_of_it(one) && one.second.is_alive; });
+    if (is_there)
+      std::erase_if(agents_, [&](const auto& one) { return is_of_it(one) && !one.second.is_alive; });
+  }
+
   void hear(const fleet::MapId& id, fleet::AgentRow row) {
+    if (!fleet::fault_of(row).empty() || (agents_.size() >= kMostAgents && !agents_.contains(id))) return;
     const auto now = Clock::now();
     Agent& agent = agents_[id];
-    const bool has_ended = row.message == kEnded;
-    if (!agent.is_alive || agent.row.role.empty()) {
-      agent.began = now;
-      // It is the former one, restarted.
-      std::erase_if(agents_, [&](const auto& other) {
-        return other.first != id && !other.second.is_alive && other.second.row.role == row.role &&
-               other.second.row.name == row.name;
-      });
-    }
+    if (!agent.is_alive || agent.row.role.empty()) agent.began = now;
     const auto wall = std::chrono::system_clock::now().time_since_epoch();
     const Stamp sent = ros::stamp_of(row.stamp);
     agent.delays_s.push_back(std::chrono::duration<double>(wall).count() -
                              static_cast<double>(sent.ns) * 1e-9);
     if (agent.delays_s.size() > kDelays) agent.delays_s.pop_front();
-    agent.row = std::move(row);
-    agent.is_alive = !has_ended;
+    agent.is_alive = !row.has_ended;
     agent.heard = now;
+    agent.row = std::move(row);
+    drop_former(agents_[id].row);
   }
 
   [[nodiscard]] FleetState state() const {
@@ -101,6 +102,7 @@ class Watch : public FleetWatch {
       shown.host = row.host;
       shown.process = row.process;
       shown.is_alive = agent.is_alive;
+      shown.has_ended = row.has_ended;
       shown.silent_s = std::chrono::duration<double>(now - agent.heard).count();
       shown.level = row.level;
       shown.message = row.message;
@@ -136,9 +138,9 @@ class Watch : public FleetWatch {
       robot.refusal = row.refusal;
       robot.heard_s_ago = row.heard_s_ago;
       robot.ignored = row.ignored;
-      if (row.ignored > 0)
-        state.warnings.push_back("robot " + row.name + ": the map agent ignores " +
-                                 std::to_string(row.ignored) + " rows");
+      if (row.ignored == 0) continue;
+      state.warnings.push_back("robot " + row.name + ": the map agent ignores " +
+                               std::to_string(row.ignored) + " rows");
     }
     std::ranges::stable_sort(state.robots, {}, &RobotState::name);
     return state;
@@ -150,9 +152,9 @@ class Watch : public FleetWatch {
       if (agent.is_alive && now - agent.began > kTwice) ++counts[{agent.row.role, agent.row.name}];
     }
     for (const auto& [who, count] : counts) {
-      if (count > 1)
-        state.warnings.push_back(who.first + " " + who.second + ": " + std::to_string(count) +
-                                 " processes of this name");
+      if (count < 2) continue;
+      state.warnings.push_back(who.first + " " + who.second + ": " + std::to_string(count) +
+                               " processes of this name");
     }
   }
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/fleet/fleet_book.hpp>
-#include <cairn/sequence/map_file.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <future>
 #include <numbers>
-#include <tuple>
+#include <set>
 #include <utility>
 
 #include <cairn/live/dds/agents.hpp>
@@ -22,7 +22,7 @@ namespace topics = fleet_topics;
 
 constexpr auto kInterval = 1s;        // between two words of the agent, and between two shared maps
 constexpr auto kTransforms = 500ms;   // between two messages of /tf
-constexpr auto kBetweenWrites = 2s;   // to the file
+constexpr auto kBetweenWrites = 10s;  // to the file
 constexpr int kRestAfterSharing = 4;  // times as long as sharing took
 
 /// The yaw, in rad.
@@ -46,57 +46,82 @@ class MapAgent {
  public:
   explicit MapAgent(const MapAgentOptions& options)
       : options_(options),
-        file_(MapFile::open(options.file, MapMode::update)),
-        book_(file_.kept()),
+        kept_(fleet::open_fleet_file(options.file)),
         participant_(fleet_participant(options.domain)),
         landmarks_(participant_, topics::kLandmarks, topics::kReadRows),
         floor_(participant_, topics::kFloor, topics::kReadRows),
         index_(participant_, topics::kIndex, topics::kReadRows),
-        agents_(participant_, topics::kAgents, topics::kReadRows),
+        agents_(participant_, topics::kAgents, topics::kReadAgents),
         map_(participant_, topics::kMapLandmarks, topics::kRows),
         transforms_(participant_, "/tf"),
-        voice_(participant_, "map", "map", fleet::map_id_of(file_.map_id()).value_or(fleet::MapId{})),
+        voice_(participant_, "map", "map", fleet::map_id_of(kept_.file.map_id()).value_or(fleet::MapId{})),
         wait_(participant_, {&landmarks_, &floor_, &index_, &agents_}) {
-    share();
+    for (const auto& [robot, pose] : options.given) kept_.book.give(robot, pose);
+    begin_sharing();
   }
 
   void run() {
     while (!options_.is_ended()) {
       wait_.wait(100ms);
+      // While maps are merged, which is not here, the agent still hears and says.
       voice_.assert_alive();
-      take_rows();
-      take_agents();
+      hear_rows();
+      hear_agents();
       const auto now = Clock::now();
-      if (has_changed_ && now >= next_share_) share();
+      if (sharing_.valid() && sharing_.wait_for(0s) == std::future_status::ready) finish_sharing();
+      if (has_changed_ && !sharing_.valid() && now >= next_share_) begin_sharing();
       if (is_unwritten_ && now - written_ >= kBetweenWrites) write();
-      if (now - said_ >= kInterval) say("");
+      if (now - said_ >= kInterval) {
+        said_ = now;
+        voice_.send(status());
+      }
       if (now - transformed_ >= kTransforms) transform();
     }
-    share();
+    if (sharing_.valid()) finish_sharing();
+    hear_rows();
+    begin_sharing();
+    finish_sharing();
     write();
-    say(kEnded);
+    map_.wait_for_readers(kInterval);
+    voice_.end(status());
   }
 
  private:
+  using Outcome = fleet::FleetBook::Outcome;
+
   template <class Row>
-  void take(ros::Reader<Row>& reader) {
+  void hear_rows_of(ros::Reader<Row>& reader) {
     while (const auto bytes = reader.BytesReader::take()) {
       try {
-        has_changed_ |= book_.take(ros::decode<Row>(*bytes)) == fleet::FleetBook::Taken::changed;
+        const auto row = ros::decode<Row>(*bytes);
+        const Outcome outcome = kept_.book.add(row);
+        has_changed_ |= outcome == Outcome::changed;
+        if (outcome == Outcome::older) {
+          const std::string name = robot_of(row).name;
+          say_once(
+              name +
+              ": its map is older than what it has shared before, as if it was restored from a copy; what it "
+              "shares is not taken until `cairn agent map --forget " +
+              name + "`");
+        }
       } catch (const Error&) {  // not such a message: whose it is cannot be told
         ++undecoded_;
+        say_once("rows that cannot be read are ignored: is another version of cairn in this domain?");
       }
     }
   }
-  void take_rows() {
-    take(landmarks_);
-    take(floor_);
-    take(index_);
-    for (const auto& [robot, refused] : book_.refused()) {
-      int& told = refusals_told_[robot];
-      if (told == 0) options_.say(robot.name + ": rows are ignored: " + refused.why);
-      told = refused.rows;
-    }
+  void hear_rows() {
+    hear_rows_of(landmarks_);
+    hear_rows_of(floor_);
+    hear_rows_of(index_);
+    for (const auto& [robot, refused] : kept_.book.refused())
+      say_once((robot.name.empty() ? "a robot without a valid name" : robot.name) +
+               ": rows are ignored: " + refused.why);
+  }
+
+  void say_once(const std::string& line) {
+    constexpr std::size_t kMostLines = 1000;
+    if (said_once_.size() < kMostLines && said_once_.insert(line).second) options_.say(line);
   }
 
   struct Heard {
@@ -104,44 +129,72 @@ class MapAgent {
     bool is_alive = true;
     Clock::time_point at;
   };
-  void take_agents() {
+  void hear_agents() {
     while (const auto change = agents_.take_change()) {
-      fleet::MapId agent{};
-      if (change->bytes.size() < 4 + agent.size()) continue;
-      std::copy_n(change->bytes.begin() + 4, agent.size(), agent.begin());
-      const auto known = heard_.find(agent);
-      if (!change->is_alive) {
-        if (known == heard_.end() || !known->second.is_alive) continue;
+      try {
+        const fleet::MapId agent = agent_of(change->bytes);
+        if (change->has_message) hear_agent(agent, ros::decode<fleet::AgentRow>(change->bytes));
+        const auto known = heard_.find(agent);
+        if (change->is_alive || known == heard_.end() || !known->second.is_alive) continue;
         known->second.is_alive = false;
         options_.say(known->second.robot.name + ": silent");
-        continue;
-      }
-      try {
-        const auto row = ros::decode<fleet::AgentRow>(change->bytes);
-        if (row.role != "perception") continue;
-        const fleet::RobotKey robot{row.map_id, fleet::checked_robot(row.name, "")};
-        const bool has_ended = row.message == kEnded;
-        const bool was_alive = known != heard_.end() && known->second.is_alive;
-        if (was_alive == has_ended) options_.say(robot.name + (has_ended ? ": ended" : ": there"));
-        if (heard_.size() < kMostHeard || known != heard_.end())
-          heard_[agent] = {robot, !has_ended, Clock::now()};
       } catch (const Error&) {
         ++undecoded_;
       }
     }
   }
+  void hear_agent(const fleet::MapId& agent, const fleet::AgentRow& row) {
+    if (row.role != "perception" || !fleet::fault_of(row).empty()) return;
+    const fleet::RobotKey robot{row.map_id, row.name};
+    const auto known = heard_.find(agent);
+    const bool was_alive = known != heard_.end() && known->second.is_alive;
+    if (known == heard_.end()) {
+      // The former process of the robot.
+      std::erase_if(heard_,
+                    [&](const auto& one) { return !one.second.is_alive && one.second.robot == robot; });
+      if (heard_.size() >= kMostHeard)
+        std::erase_if(heard_, [](const auto& one) { return !one.second.is_alive; });
+      if (heard_.size() >= kMostHeard) return;
+    }
+    if (was_alive == row.has_ended) options_.say(robot.name + (row.has_ended ? ": ended" : ": there"));
+    heard_[agent] = {robot, !row.has_ended, Clock::now()};
+    fleet::MapId& current = current_[robot.name];
+    if (current == robot.map_id) return;
+    current = robot.map_id;
+    has_changed_ = true;  // what is given for the name is meant for this map
+  }
 
-  void share() {
-    const auto began = Clock::now();
-    const fleet::Placements placements{options_.given, book_.origin(!options_.given.empty())};
-    fleet::SharedMap shared = fleet::share(book_.maps(), placements, book_.ids(), config_);
-    book_.set_ids(shared.ids);
+  /// Robots whose name is that of another map now: their map file was deleted.
+  [[nodiscard]] bool is_former(const fleet::RobotKey& robot) const {
+    const auto current = current_.find(robot.name);
+    return current != current_.end() && current->second != robot.map_id;
+  }
+
+  void begin_sharing() {
+    has_changed_ = false;
+    std::vector<fleet::RobotMap> maps = kept_.book.maps();
+    std::set<fleet::RobotKey> former;
+    for (const fleet::RobotMap& map : maps) {
+      if (is_former(map.robot)) former.insert(map.robot);
+    }
+    fleet::Placements placements = kept_.book.placements(former);
+    if (!maps.empty() && placements.known.empty())
+      say_once("no robot whose place is given (--at) has shared anything yet: all places are unknown");
+    began_sharing_ = Clock::now();
+    sharing_ = std::async(std::launch::async, [maps = std::move(maps), placements = std::move(placements),
+                                               ids = kept_.book.ids()]() mutable {
+      return fleet::share(std::move(maps), placements, ids, LandmarksConfig{});
+    });
+  }
+  void finish_sharing() {
+    fleet::SharedMap shared = sharing_.get();
+    next_share_ = Clock::now() +
+                  std::max<Clock::duration>(kInterval, kRestAfterSharing * (Clock::now() - began_sharing_));
+    kept_.book.set_ids(shared.ids);
+    kept_.book.set_places(shared.robots);
     report(shared);
     shared_ = std::move(shared);
-    has_changed_ = false;
     is_unwritten_ = true;
-    next_share_ =
-        Clock::now() + std::max<Clock::duration>(kInterval, kRestAfterSharing * (Clock::now() - began));
     publish();
   }
 
@@ -174,7 +227,7 @@ class MapAgent {
     transformed_ = Clock::now();
     ros::TFMessage message;
     for (const fleet::PlacedRobot& robot : shared_.robots) {
-      if (!robot.map_from_robot) continue;
+      if (!robot.map_from_robot || is_former(robot.robot)) continue;
       const Point3 at = robot.map_from_robot->translation_m;
       const auto turn = quaternion(*robot.map_from_robot);
       message.transforms.push_back({{wall_clock(), "map"},
@@ -185,64 +238,81 @@ class MapAgent {
   }
 
   void write() {
-    file_.keep(book_.changes(), shared_.map);
+    kept_.file.keep(kept_.book.changes(), shared_.map);
     written_ = Clock::now();
     is_unwritten_ = false;
   }
 
-  void say(const std::string& last_words) {
-    said_ = Clock::now();
+  /// A robot as others see it; `placed`: null if it has no row that is sound.
+  fleet::KnownRobotRow row_of(const fleet::RobotKey& robot, const fleet::PlacedRobot* placed) const {
+    fleet::KnownRobotRow row;
+    row.name = robot.name;
+    row.map_id = robot.map_id;
+    if (placed != nullptr && placed->map_from_robot) {
+      row.is_located = true;
+      const Point3 at = placed->map_from_robot->translation_m;
+      row.position = {at.x, at.y, at.z};
+      row.yaw = yaw_of(*placed->map_from_robot);
+    } else if (placed != nullptr) {
+      row.refusal = choice_name(placed->refusal, kRecognitionRefusals);
+    } else {
+      row.refusal = "rows ignored";
+    }
+    if (placed != nullptr) {
+      row.landmarks = static_cast<std::int32_t>(placed->landmarks);
+      row.pairs = static_cast<std::int32_t>(placed->pairs);
+    }
+    if (is_former(robot)) row.refusal = "a former map of this robot";
+    for (const auto& [agent, heard] : heard_) {
+      if (heard.robot != robot) continue;
+      const double ago = std::chrono::duration<double>(Clock::now() - heard.at).count();
+      row.heard_s_ago = row.heard_s_ago < 0 ? ago : std::min(row.heard_s_ago, ago);
+    }
+    const auto refused = kept_.book.refused().find(robot);
+    if (refused != kept_.book.refused().end()) row.ignored = refused->second.rows;
+    return row;
+  }
+
+  /// Sets the robots of the row, too.
+  ros::DiagnosticStatus status() {
     voice_.row.landmarks = static_cast<std::int32_t>(shared_.map.list.size());
     voice_.row.robots.clear();
+    for (const fleet::PlacedRobot& placed : shared_.robots)
+      voice_.row.robots.push_back(row_of(placed.robot, &placed));
+    for (const auto& [robot, refused] : kept_.book.refused()) {
+      const bool is_listed =
+          std::ranges::find(shared_.robots, robot, &fleet::PlacedRobot::robot) != shared_.robots.end();
+      if (!is_listed && !robot.name.empty()) voice_.row.robots.push_back(row_of(robot, nullptr));
+    }
     ros::DiagnosticStatus status;
     status.name = "cairn: map";
     std::size_t lost = 0;
-    int ignored_of_all = undecoded_;
-    for (const fleet::PlacedRobot& robot : shared_.robots) {
-      fleet::KnownRobotRow& row = voice_.row.robots.emplace_back();
-      row.name = robot.robot.name;
-      row.map_id = robot.robot.map_id;
-      row.landmarks = static_cast<std::int32_t>(robot.landmarks);
-      row.is_located = robot.map_from_robot.has_value();
-      if (row.is_located) {
-        const Point3 at = robot.map_from_robot->translation_m;
-        row.position = {at.x, at.y, at.z};
-        row.yaw = yaw_of(*robot.map_from_robot);
-      } else {
-        row.refusal = choice_name(robot.refusal, kRecognitionRefusals);
-        ++lost;
-      }
-      row.pairs = static_cast<std::int32_t>(robot.pairs);
-      for (const auto& [agent, heard] : heard_) {
-        if (heard.robot != robot.robot) continue;
-        const double ago = std::chrono::duration<double>(Clock::now() - heard.at).count();
-        row.heard_s_ago = row.heard_s_ago < 0 ? ago : std::min(row.heard_s_ago, ago);
-      }
-      const auto refused = book_.refused().find(robot.robot);
-      if (refused != book_.refused().end()) row.ignored = refused->second.rows;
-      ignored_of_all += row.ignored;
+    int ignored = undecoded_;
+    for (const fleet::KnownRobotRow& row : voice_.row.robots) {
+      lost += row.is_located || row.refusal == "a former map of this robot" ? 0 : 1;
+      ignored += row.ignored;
       status.values.push_back({"robot " + row.name, row.is_located ? "located" : row.refusal});
     }
     status.values.push_back({"landmarks", std::to_string(voice_.row.landmarks)});
-    status.message = std::to_string(shared_.robots.size()) + " robots";
-    if (ignored_of_all > 0) {
+    status.message =
+        std::to_string(shared_.robots.size()) + (shared_.robots.size() == 1 ? " robot" : " robots");
+    const bool is_ignoring = ignored > ignored_before_;
+    ignored_before_ = ignored;
+    if (is_ignoring) {
       status.level = ros::DiagnosticStatus::kWarn;
-      status.message = std::to_string(ignored_of_all) + " rows ignored";
+      status.message = std::to_string(ignored) + " rows ignored";
     } else if (lost > 0) {
       status.level = ros::DiagnosticStatus::kWarn;
       status.message = "the place of " + std::to_string(lost) + " of " +
-                       std::to_string(shared_.robots.size()) + " robots is unknown";
+                       std::to_string(voice_.row.robots.size()) + " robots is unknown";
     }
-    if (!last_words.empty()) status.message = last_words;
-    voice_.send(std::move(status));
+    return status;
   }
 
   static constexpr std::size_t kMostHeard = 4 * fleet::FleetBook::kMostRobots;
 
   const MapAgentOptions& options_;
-  MapFile file_;
-  fleet::FleetBook book_;
-  LandmarksConfig config_;
+  fleet::FleetFile kept_;
   ros::Participant participant_;
   ros::Reader<fleet::LandmarkRow> landmarks_;
   ros::Reader<fleet::FloorRow> floor_;
@@ -252,12 +322,16 @@ class MapAgent {
   ros::Writer<ros::TFMessage> transforms_;
   AgentVoice voice_;
   ros::ReaderWait wait_;
-  std::map<fleet::MapId, Heard> heard_;  // by process
-  std::map<fleet::RobotKey, int> refusals_told_;
+  std::map<fleet::MapId, Heard> heard_;          // by process
+  std::map<std::string, fleet::MapId> current_;  // by name: the map that was heard last
+  std::set<std::string> said_once_;
   int undecoded_ = 0;
+  int ignored_before_ = 0;
   fleet::SharedMap shared_;
+  std::future<fleet::SharedMap> sharing_;
   bool has_changed_ = false;
   bool is_unwritten_ = false;
+  Clock::time_point began_sharing_;
   Clock::time_point next_share_;
   Clock::time_point written_;
   Clock::time_point said_;

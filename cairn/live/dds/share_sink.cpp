@@ -23,12 +23,15 @@ namespace topics = fleet_topics;
 constexpr auto kInterval = 1s;
 /// How long to wait at the end until others have received the last rows.
 constexpr auto kLastWords = 1s;
+/// How long rows of a map may take, before the rest waits for the next time.
+constexpr auto kPatience = 250ms;
 
 fleet::RobotKey robot_key(const ShareOptions& options) {
   const std::optional<fleet::MapId> map_id = fleet::map_id_of(options.map_id);
-  if (!map_id)
+  if (!map_id) {
     throw Error("--share: the map has the identity \"" + options.map_id +
                 "\", expected 32 hexadecimal digits: cairn writes them since maps can be merged");
+  }
   return {*map_id, fleet::checked_robot(options.robot, "--share")};
 }
 
@@ -42,6 +45,7 @@ class ShareSink : public Sink {
         floor_(participant_, topics::kFloor, topics::kRows),
         index_(participant_, topics::kIndex, topics::kRows),
         events_(participant_, topics::kEvents, topics::kLastEvents),
+        differences_(robot_),
         tracks_(participant_, "/" + robot_.name + "/cairn/tracks"),
         pose_(participant_, "/" + robot_.name + "/cairn/pose"),
         voice_(participant_, "perception", robot_.name, robot_.map_id),
@@ -79,27 +83,25 @@ class ShareSink : public Sink {
 
   void finish() override {
     end();
-    send_rows();
-    send_events();
-    status_.level = ros::DiagnosticStatus::kOk;
-    status_.message = kEnded;
-    voice_.send(status_);
     const auto deadline = Clock::now() + kLastWords;
     const auto wait = [&](const ros::BytesWriter& writer) {
       if (writer.has_reader())
         writer.wait_for_readers(std::max<Clock::duration>(deadline - Clock::now(), 1ms));
     };
+    send_rows(deadline);
+    send_events();
     wait(landmarks_);
     wait(floor_);
     wait(index_);
     wait(events_);
+    voice_.end(status_);
   }
 
   [[nodiscard]] std::string summary() const override {
     std::string text = "shared as " + robot_.name + " in domain " + std::to_string(domain_) + ": " +
                        std::to_string(voice_.row.landmarks) + " landmarks, " + std::to_string(sent_) +
                        " rows sent";
-    if (held_up_ > 0) text += " (" + std::to_string(held_up_) + " held up by slow readers)";
+    if (held_up_ > 0) text += " (held up by slow readers " + std::to_string(held_up_) + " times)";
     return trouble_.empty() ? text : text + "; " + trouble_;
   }
 
@@ -115,7 +117,7 @@ class ShareSink : public Sink {
       const auto frame = slot_.take(100ms);
       try {
         if (frame) publish(*frame);
-        send_rows();
+        send_rows(Clock::now() + kPatience);
         send_events();
         const Clock::duration since_alive = Clock::now().time_since_epoch() - Clock::duration(alive_);
         if (Clock::now() - said < kInterval || since_alive > topics::kLease / 2) continue;
@@ -140,19 +142,29 @@ class ShareSink : public Sink {
       pose_.write(ros::camera_pose_of(header, frame->step, map_from_odom, frame->camera_covariance));
   }
 
-  void send_rows() {
-    const auto map = maps_.take(0ns);
-    if (!map) return;
-    if (!differences_ || map->second != run_) {
-      run_ = map->second;
-      differences_.emplace(robot_, run_);
+  /// What has changed in the map. What readers are too slow to accept, or is left at the deadline, comes again.
+  void send_rows(Clock::time_point deadline) {
+    if (auto newer = maps_.take(0ns)) {
+      map_ = newer->first;
+      differences_.begin_run(newer->second);
+      is_unsent_ = true;
     }
-    const fleet::RowDifferences::Changes changes = differences_->next(*map->first);
-    const auto count = [this](bool is_sent) { ++(is_sent ? sent_ : held_up_); };
-    for (const fleet::LandmarkRow& row : changes.landmarks) count(landmarks_.write(row));
-    for (const fleet::FloorRow& row : changes.floor) count(floor_.write(row));
-    if (changes.index) count(index_.write(*changes.index));
-    voice_.row.landmarks = static_cast<std::int32_t>(map->first->list.size());
+    if (!map_ || !is_unsent_) return;
+    const fleet::RowDifferences::Changes changes = differences_.next(*map_);
+    is_unsent_ = false;
+    const auto send = [&](auto& writer, const auto& row) {
+      if (!is_unsent_ && Clock::now() < deadline && writer.write(row)) {
+        ++sent_;
+        return;
+      }
+      held_up_ += is_unsent_ ? 0 : 1;
+      is_unsent_ = true;
+      differences_.is_unsent(row);
+    };
+    for (const fleet::LandmarkRow& row : changes.landmarks) send(landmarks_, row);
+    for (const fleet::FloorRow& row : changes.floor) send(floor_, row);
+    if (changes.index) send(index_, *changes.index);
+    voice_.row.landmarks = static_cast<std::int32_t>(map_->list.size());
   }
 
   void send_events() {
@@ -188,18 +200,19 @@ class ShareSink : public Sink {
   }
 
   fleet::RobotKey robot_;
+  std::shared_ptr<const LandmarkMap> map_;
+  bool is_unsent_ = false;  // some rows of the map
   MessageForm form_;
   ros::Participant participant_;
   ros::Writer<fleet::LandmarkRow> landmarks_;
   ros::Writer<fleet::FloorRow> floor_;
   ros::Writer<fleet::IndexRow> index_;
   ros::Writer<ros::String> events_;
+  fleet::RowDifferences differences_;
   ros::Writer<ros::Detection3DArray> tracks_;
   ros::Writer<ros::PoseWithCovarianceStamped> pose_;
   AgentVoice voice_;
   std::uint32_t domain_;
-  std::optional<fleet::RowDifferences> differences_;
-  std::int64_t run_ = 0;
   LiveFramePtr last_;
   Clock::time_point last_at_;
   ros::DiagnosticStatus status_;

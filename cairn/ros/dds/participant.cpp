@@ -78,39 +78,53 @@ std::string domain_words(std::uint32_t id) {
   return "DDS domain " + std::to_string(id) + (uri.empty() ? "" : " with CYCLONEDDS_URI=" + uri);
 }
 
-/// Cyclone prints a line for each packet that a link without network refuses, 25 a second.
+/// Cyclone prints a line for each packet that a link without network refuses, 25 a second: each text once in ten seconds.
 void print_seldom(void* /*unused*/, const dds_log_data_t* line) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kInterval = std::chrono::seconds(10);
+  constexpr std::size_t kMostTexts = 100;
+  constexpr std::size_t kCompared = 60;  // addresses and error codes follow
   static std::mutex mutex;
-  static Clock::time_point last;
-  static int left_out = 0;
-  const std::lock_guard lock(mutex);
-  if (last != Clock::time_point{} && Clock::now() - last < kInterval) {
-    ++left_out;
-    return;
+  static std::map<std::string, Clock::time_point> last;
+  const std::string text(line->message, std::strcspn(line->message, "\n"));
+  {
+    const std::lock_guard lock(mutex);
+    if (last.size() > kMostTexts) last.clear();
+    Clock::time_point& before = last[text.substr(0, kCompared)];
+    if (before != Clock::time_point{} && Clock::now() - before < kInterval) return;
+    before = Clock::now();
   }
-  last = Clock::now();
-  const std::string_view text(line->message, std::strcspn(line->message, "\n"));
-  std::fprintf(stderr, "cairn: DDS: %.*s%s\n", static_cast<int>(text.size()), text.data(),
-               left_out > 0 ? (" (and " + std::to_string(left_out) + " more)").c_str() : "");
-  left_out = 0;
+  std::fprintf(stderr, "cairn: DDS: %s\n", text.c_str());
 }
 
 /// The configuration of a domain in this process: created with the first participant, destroyed with the
 /// last.
 std::shared_ptr<Entity> domain_of(const DomainSettings& settings) {
+  struct Known {
+    std::weak_ptr<Entity> domain;
+    std::string configuration;
+  };
   static std::mutex mutex;
-  static std::map<std::uint32_t, std::weak_ptr<Entity>> all;
+  static std::map<std::uint32_t, Known> all;
   if (settings.configuration.empty()) return nullptr;
+  const auto refuse = [&] {
+    throw Error("DDS domain " + std::to_string(settings.id) +
+                ": this process uses it for ROS topics, expected another one for agents (--fleet-domain)");
+  };
   const std::lock_guard lock(mutex);
-  std::weak_ptr<Entity>& known = all[settings.id];
-  if (auto domain = known.lock()) return domain;
-  dds_set_log_sink(&print_seldom, nullptr);
+  Known& known = all[settings.id];
+  if (auto domain = known.domain.lock()) {
+    if (settings.is_own && known.configuration != settings.configuration) refuse();
+    return domain;
+  }
+  if (settings.is_own) dds_set_log_sink(&print_seldom, nullptr);
   const dds_entity_t domain = dds_create_domain(settings.id, settings.configuration.c_str());
-  if (domain == DDS_RETCODE_PRECONDITION_NOT_MET) return nullptr;  // created elsewhere in this process
+  if (domain == DDS_RETCODE_PRECONDITION_NOT_MET) {  // created elsewhere in this process
+    if (settings.is_own) refuse();
+    return nullptr;
+  }
   auto made = std::make_shared<Entity>(domain, domain_words(settings.id));
-  known = made;
+  known = {made, settings.configuration};
   return made;
 }
 
@@ -180,9 +194,10 @@ DomainSettings domain_of_environment() {
 }
 
 DomainSettings domain_of_fleet(std::uint32_t id, const std::string& interface) {
-  if (id > kLastDomain)
+  if (id > kLastDomain) {
     throw Error("fleet domain: found " + std::to_string(id) + ", expected 0 ... " +
                 std::to_string(kLastDomain));
+  }
   if (interface.find_first_of("<>&\"'") != std::string::npos)
     throw Error("fleet interface: found " + interface + ", expected the name of a network interface");
   std::string settings =
@@ -192,7 +207,7 @@ DomainSettings domain_of_fleet(std::uint32_t id, const std::string& interface) {
                        "\"/></Interfaces></General>");
   settings += "," + configured("<Discovery><SPDPInterval>1s</SPDPInterval></Discovery>");
   if (const std::string uri = environment("CYCLONEDDS_URI"); !uri.empty()) settings += "," + uri;
-  return {id, settings};
+  return {id, settings, true};
 }
 
 Participant::Participant(const DomainSettings& settings)
@@ -279,12 +294,13 @@ std::optional<BytesReader::Change> BytesReader::take_change() {
     return std::nullopt;
   const std::unique_ptr<ddsi_serdata, decltype(&ddsi_serdata_unref)> owned(data, &ddsi_serdata_unref);
   const auto bytes = bytes_of(data);
-  return Change{{bytes.begin(), bytes.end()}, info.valid_data};
+  const bool is_alive = info.instance_state == DDS_IST_ALIVE;
+  return Change{{bytes.begin(), bytes.end()}, info.valid_data, is_alive};
 }
 
 std::optional<Bytes> BytesReader::take() {
   while (std::optional<Change> change = take_change()) {
-    if (change->is_alive) return std::move(change->bytes);  // else a writer disappeared
+    if (change->has_message) return std::move(change->bytes);  // else a writer disappeared
   }
   return std::nullopt;
 }

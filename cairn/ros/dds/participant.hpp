@@ -42,11 +42,13 @@ struct DomainSettings {
   /// The Cyclone configuration; empty: its default, with CYCLONEDDS_URI. CYCLONEDDS_URI overrides
   /// ROS_LOCALHOST_ONLY and ROS_AUTOMATIC_DISCOVERY_RANGE.
   std::string configuration;
+  bool is_own = false;  // refused if this process is in the domain with another configuration
 };
 /// Throws Error if a variable has an invalid value.
 DomainSettings domain_of_environment();
 /// The domain that agents share: this computer only, or the network of `interface`, if given ("wlan0"). Members that were
-/// cut off are found again within a second. CYCLONEDDS_URI overrides it. Throws Error for a domain without ports.
+/// cut off are found again within a second. CYCLONEDDS_URI overrides it, as all of Cyclone's settings. Throws Error for a
+/// domain without ports.
 DomainSettings domain_of_fleet(std::uint32_t id, const std::string& interface);
 
 /// A member of a domain; sockets are open while one exists.
@@ -122,9 +124,10 @@ class BytesReader {
               ReaderQos qos = {});
   /// The next message; nullopt if there is none now.
   std::optional<Bytes> take();
-  /// The next change of an instance: a message, or that its writers have gone or are not alive; `bytes` is then its key.
+  /// The next change of an instance: a message, that its writers have gone or are not alive, or both.
   struct Change {
-    Bytes bytes;
+    Bytes bytes;  // of the message, else of the key alone
+    bool has_message = true;
     bool is_alive = true;
   };
   std::optional<Change> take_change();

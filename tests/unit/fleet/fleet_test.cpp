@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "support/landmark_rooms.hpp"
+#include "support/temporary_folder.hpp"
 
 /// What robots share: rows, and one map made of them, whatever the order in which they come.
 namespace cairn::fleet {
@@ -94,6 +95,9 @@ TEST(FleetRows, AreCheckedAsForeignBytes) {
   EXPECT_NE(fault([](LandmarkRow& r) { r.covariance[1] = 0.1; }), "");
   EXPECT_NE(fault([](LandmarkRow& r) { r.covariance[4] = -1; }), "");
   EXPECT_NE(fault([](LandmarkRow& r) { r.covariance = {}; }), "");
+  EXPECT_NE(fault([](LandmarkRow& r) { r.covariance = {1e-103, 0, 0, 0, 1e-103, 0, 0, 0, 1e-103}; }), "");
+  EXPECT_NE(fault([](LandmarkRow& r) { r.covariance = {1, 1, 0, 1, 1, 0, 0, 0, 1}; }), "");
+  EXPECT_NE(fault([](LandmarkRow& r) { r.seen = std::numeric_limits<std::int32_t>::max(); }), "");
   EXPECT_NE(fault([](LandmarkRow& r) { r.widest = -1; }), "");
   EXPECT_NE(fault([](LandmarkRow& r) { r.height_over_floor = kNan; }), "");
   EXPECT_NE(fault([](LandmarkRow& r) { r.log_odds = 6; }), "");
@@ -115,11 +119,25 @@ TEST(FleetRows, AreCheckedAsForeignBytes) {
   EXPECT_EQ(fault_of(index), "");
   index.tile_x = {1};
   EXPECT_NE(fault_of(index), "");
+  AgentRow agent;
+  agent.role = "perception";
+  agent.name = "a";
+  EXPECT_EQ(fault_of(agent), "");
+  agent.message = "\nWATCHDOG=trigger";
+  EXPECT_NE(fault_of(agent), "");
+  agent.message = "";
+  agent.name = "map";
+  EXPECT_NE(fault_of(agent), "");
+  agent.role = "map";
+  EXPECT_EQ(fault_of(agent), "");
+  agent.robots.resize(1);
+  EXPECT_NE(fault_of(agent), "");
 }
 
 TEST(FleetRows, NamesAndIdentitiesAreChecked) {
   EXPECT_EQ(checked_robot("robot_2", "--share"), "robot_2");
-  for (const char* const wrong : {"", "2", "A", "a-b", "_a", "a b", "a23456789012345678901234567890123"})
+  for (const char* const wrong :
+       {"", "2", "A", "map", "a-b", "_a", "a b", "a23456789012345678901234567890123"})
     EXPECT_THROW(checked_robot(wrong, "--share"), Error) << wrong;
   const std::string digits = "00112233445566778899aabbccddeeff";
   EXPECT_EQ(digits_of(map_id_of(digits).value()), digits);
@@ -129,7 +147,8 @@ TEST(FleetRows, NamesAndIdentitiesAreChecked) {
 
 TEST(FleetRows, OnlyWhatChangedIsSent) {
   LandmarkMap map = map_of(room_of(5, 1), 0, 5, {});
-  RowDifferences differences(robot(1, "a"), 2);
+  RowDifferences differences(robot(1, "a"));
+  differences.begin_run(2);
   const auto first = differences.next(map);
   EXPECT_EQ(first.landmarks.size(), 5U);
   EXPECT_EQ(first.floor.size(), 9U);
@@ -137,6 +156,15 @@ TEST(FleetRows, OnlyWhatChangedIsSent) {
   EXPECT_EQ(first.index->landmarks.size(), 5U);
   EXPECT_GE(first.landmarks[0].version, std::uint64_t{2} << 32U);
 
+  // What could not be sent comes again.
+  differences.is_unsent(first.landmarks[1]);
+  differences.is_unsent(first.floor[2]);
+  const auto again = differences.next(map);
+  ASSERT_EQ(again.landmarks.size(), 1U);
+  EXPECT_EQ(again.landmarks[0].id, first.landmarks[1].id);
+  ASSERT_EQ(again.floor.size(), 1U);
+  EXPECT_EQ(again.floor[0].x, first.floor[2].x);
+  EXPECT_TRUE(again.index);
   const auto same = differences.next(map);
   EXPECT_TRUE(same.landmarks.empty() && same.floor.empty() && !same.index);
 
@@ -154,12 +182,17 @@ TEST(FleetRows, OnlyWhatChangedIsSent) {
   EXPECT_TRUE(fewer.landmarks.empty());
   ASSERT_TRUE(fewer.index);
   EXPECT_EQ(fewer.index->landmarks.size(), 4U);
+  map.list.push_back(room_of(6, 1)[5]);  // one more needs no index
+  const auto more = differences.next(map);
+  EXPECT_EQ(more.landmarks.size(), 1U);
+  EXPECT_FALSE(more.index);
 }
 
 // ---- the shared map ----
 
 class SharedMaps : public testing::Test {
  protected:
+  static Placements at(const MapId& origin) { return {{{origin, Pose{}}}, {}}; }
   const std::vector<Landmark> room_ = room_of(20, 11);
   const std::vector<RobotMap> robots_{{robot(3, "a"), map_of(room_, 0, 12, {})},
                                       {robot(2, "b"), map_of(room_, 4, 16, turned_by(1.1, 3, -2))},
@@ -170,8 +203,8 @@ class SharedMaps : public testing::Test {
 TEST_F(SharedMaps, AreThoseOfMergedFiles) {
   const auto origin = origin_of(robots_);
   ASSERT_TRUE(origin);
-  EXPECT_EQ(origin->map_id, robots_[1].robot.map_id);  // as many landmarks as a, and a lower identity
-  const Placements placements{{}, Origin{robots_[0].robot.map_id, {}}};
+  EXPECT_EQ(*origin, robots_[1].robot.map_id);  // as many landmarks as a, and a lower identity
+  const Placements placements = at(robots_[0].robot.map_id);
   const SharedMap shared = share(robots_, placements, {}, config_);
   MapsMerge merged =
       merge_all(robots_[0].map, {{robots_[2].map, false, {}}, {robots_[1].map, false, {}}}, config_);
@@ -190,7 +223,7 @@ TEST_F(SharedMaps, AreThoseOfMergedFiles) {
 }
 
 TEST_F(SharedMaps, KeepTheirIds) {
-  const Placements placements{{}, Origin{robots_[0].robot.map_id, {}}};
+  const Placements placements = at(robots_[0].robot.map_id);
   // b is there later than a and c, c gets more landmarks, then b leaves.
   std::vector<RobotMap> now{robots_[0], {robots_[2].robot, map_of(room_, 10, 16, turned_by(-2, -1, 4))}};
   SharedMap shared = share(now, placements, {}, config_);
@@ -220,14 +253,15 @@ TEST_F(SharedMaps, KeepTheirIds) {
 TEST_F(SharedMaps, AnotherRoomStaysUnknownAndAGivenPlaceIsTaken) {
   std::vector<RobotMap> robots = robots_;
   robots.push_back({robot(9, "elsewhere"), map_of(room_of(8, 99), 0, 8, {})});
-  const Placements unknown{{}, Origin{robots[0].robot.map_id, {}}};
+  const Placements unknown = at(robots[0].robot.map_id);
   const SharedMap without = share(robots, unknown, {}, config_);
   const PlacedRobot& lost = without.robots.back();
   EXPECT_EQ(lost.robot.name, "elsewhere");
   EXPECT_FALSE(lost.map_from_robot);
   EXPECT_NE(lost.refusal, RecognitionRefusal::none);
   EXPECT_EQ(without.map.list.size(), room_.size());
-  const Placements given{{{"elsewhere", turned_by(0, 100, 0)}}, unknown.origin};
+  Placements given = unknown;
+  given.known[robots.back().robot.map_id] = turned_by(0, 100, 0);
   const SharedMap with = share(robots, given, without.ids, config_);
   EXPECT_TRUE(with.robots.back().map_from_robot);
   EXPECT_EQ(with.map.list.size(), room_.size() + 8);
@@ -240,7 +274,7 @@ TEST_F(SharedMaps, CopiesOfOneMapAreMergedByTheirIds) {
   copy.map.list[2].seen += 10;
   copy.map.list[2].last.ns += 1000;
   copy.map.list[2].position_m.x += 2;  // carried away
-  const SharedMap shared = share({robots_[0], copy}, {{}, Origin{copy.robot.map_id, {}}}, {}, config_);
+  const SharedMap shared = share({robots_[0], copy}, at(copy.robot.map_id), {}, config_);
   EXPECT_EQ(shared.map.list.size(), robots_[0].map.list.size());
   EXPECT_EQ(shared.map.list[2].position_m.x, copy.map.list[2].position_m.x);
   EXPECT_EQ(shared.landmarks[2].of.size(), 2U);
@@ -254,7 +288,7 @@ TEST_F(SharedMaps, WhatTwoRobotsCutDifferentlyIsListedOnce) {
   theirs.looks[0].colours[7] = 1;
   theirs.looks[0].colours[71] = 1;
   theirs.seen = 5;
-  const SharedMap shared = share(robots, {{}, Origin{robots[0].robot.map_id, {}}}, {}, config_);
+  const SharedMap shared = share(robots, at(robots[0].robot.map_id), {}, config_);
   EXPECT_EQ(shared.map.list.size(), 17U);
   const auto part = std::ranges::find_if(
       shared.landmarks, [](const SharedLandmark& landmark) { return landmark.part_of != LandmarkId::none; });
@@ -271,7 +305,8 @@ using AnyRow = std::variant<LandmarkRow, FloorRow, IndexRow>;
 
 /// The rows that a robot sends while its map grows.
 std::vector<AnyRow> history_of(const RobotMap& robot) {
-  RowDifferences differences(robot.robot, 1);
+  RowDifferences differences(robot.robot);
+  differences.begin_run(1);
   std::vector<AnyRow> rows;
   LandmarkMap map;
   const auto add = [&] {
@@ -296,8 +331,8 @@ std::vector<AnyRow> history_of(const RobotMap& robot) {
   return rows;
 }
 
-FleetBook::Taken take(FleetBook& book, const AnyRow& row) {
-  return std::visit([&](const auto& one) { return book.take(one); }, row);
+FleetBook::Outcome add(FleetBook& book, const AnyRow& row) {
+  return std::visit([&](const auto& one) { return book.add(one); }, row);
 }
 
 TEST_F(SharedMaps, AreTheSameForAnyOrderOfRows) {
@@ -305,7 +340,7 @@ TEST_F(SharedMaps, AreTheSameForAnyOrderOfRows) {
   for (const RobotMap& robot : robots_) {
     for (AnyRow& row : history_of(robot)) rows.push_back(std::move(row));
   }
-  const Placements placements{{}, Origin{robots_[0].robot.map_id, {}}};
+  const Placements placements = at(robots_[0].robot.map_id);
   const SharedMap expected = share(robots_, placements, {}, config_);
   std::mt19937 random(5);
   for (int trial = 0; trial < 100; ++trial) {
@@ -315,9 +350,9 @@ TEST_F(SharedMaps, AreTheSameForAnyOrderOfRows) {
     std::ranges::shuffle(sent, random);
     FleetBook book;
     for (std::size_t i = 0; i < sent.size(); ++i) {
-      EXPECT_NE(take(book, sent[i]), FleetBook::Taken::refused);
+      EXPECT_NE(add(book, sent[i]), FleetBook::Outcome::refused);
       // What was lost on the way is sent again, as durability does: the last row of each key.
-      if (trial % 4 == 0 && i % 3 == 0) take(book, sent[random() % (i + 1)]);
+      if (trial % 4 == 0 && i % 3 == 0) add(book, sent[random() % (i + 1)]);
     }
     const std::vector<RobotMap> maps = book.maps();
     ASSERT_EQ(maps.size(), robots_.size());
@@ -333,7 +368,7 @@ TEST_F(SharedMaps, AreTheSameForAnyOrderOfRows) {
 TEST_F(SharedMaps, ComeBackFromAFile) {
   FleetBook book;
   for (const RobotMap& robot : robots_) {
-    for (const AnyRow& row : history_of(robot)) take(book, row);
+    for (const AnyRow& row : history_of(robot)) add(book, row);
   }
   std::map<std::string, std::string> kept;
   const auto keep = [&] {
@@ -346,15 +381,17 @@ TEST_F(SharedMaps, ComeBackFromAFile) {
     }
   };
   const auto shared_of = [&](FleetBook& from) {
-    return share(from.maps(), {{}, from.origin(false)}, from.ids(), config_);
+    return share(from.maps(), from.placements(), from.ids(), config_);
   };
   SharedMap shared = shared_of(book);
   book.set_ids(shared.ids);
+  book.set_places(shared.robots);
   keep();
   EXPECT_TRUE(book.changes().empty());
   FleetBook again(kept);
   EXPECT_EQ(again.ids(), book.ids());
-  EXPECT_EQ(again.origin(true)->map_id, book.origin(true)->map_id);
+  EXPECT_EQ(again.placements().known.begin()->first, book.placements().known.begin()->first);
+  EXPECT_EQ(again.placements().last.size(), 3U);
   SharedMap back = shared_of(again);
   ASSERT_EQ(back.map.list.size(), shared.map.list.size());
   for (std::size_t i = 0; i < back.map.list.size(); ++i) {
@@ -362,7 +399,7 @@ TEST_F(SharedMaps, ComeBackFromAFile) {
     EXPECT_EQ(back.map.list[i].id, shared.map.list[i].id);
   }
   // Rows that arrive again change nothing, and damage loses only what it hits.
-  for (const AnyRow& row : history_of(robots_[0])) EXPECT_EQ(take(again, row), FleetBook::Taken::known);
+  for (const AnyRow& row : history_of(robots_[0])) EXPECT_NE(add(again, row), FleetBook::Outcome::changed);
   EXPECT_TRUE(again.changes().empty());
   for (auto& [key, value] : kept) value.resize(value.size() / 2);
   kept["landmark/x"] = "nonsense";
@@ -372,17 +409,17 @@ TEST_F(SharedMaps, ComeBackFromAFile) {
 TEST_F(SharedMaps, DoNotMoveWhenTheirOriginIsForgotten) {
   FleetBook book;
   for (const RobotMap& robot : robots_) {
-    for (const AnyRow& row : history_of(robot)) take(book, row);
+    for (const AnyRow& row : history_of(robot)) add(book, row);
   }
-  const auto shared_of = [&] { return share(book.maps(), {{}, book.origin(false)}, book.ids(), config_); };
+  const auto shared_of = [&] { return share(book.maps(), book.placements(), book.ids(), config_); };
   SharedMap before = shared_of();
   book.set_ids(before.ids);
   const std::string first = "b";  // the one with the lowest identity among the largest
-  EXPECT_EQ(book.origin(false)->map_id, robots_[1].robot.map_id);
+  EXPECT_TRUE(book.placements().known.contains(robots_[1].robot.map_id));
   EXPECT_EQ(book.forget("nobody", before.robots), 0);
   EXPECT_EQ(book.forget(first, before.robots), 1);
   EXPECT_EQ(book.maps().size(), 2U);
-  EXPECT_NE(book.origin(true)->map_id, robots_[1].robot.map_id);
+  EXPECT_FALSE(book.placements().known.contains(robots_[1].robot.map_id));
   const SharedMap after = shared_of();
   for (const Landmark& landmark : after.map.list) {
     const Landmark* const was = find(before.map, landmark.id);
@@ -391,17 +428,77 @@ TEST_F(SharedMaps, DoNotMoveWhenTheirOriginIsForgotten) {
   }
 }
 
+/// What was found once needs less to be confirmed: a growing map does not lose its place.
+TEST_F(SharedMaps, KeepTheirPlacesWithFewerCommonLandmarks) {
+  std::vector<RobotMap> robots{robots_[0], {robots_[1].robot, map_of(room_, 9, 20, turned_by(1.1, 3, -2))}};
+  const Placements placements = at(robots[0].robot.map_id);
+  EXPECT_FALSE(share(robots, placements, {}, config_).robots[0].map_from_robot);  // three in common
+  Placements known_before = placements;
+  known_before.last[robots[1].robot.map_id] = inverse(turned_by(1.1, 3, -2));
+  const SharedMap shared = share(robots, known_before, {}, config_);
+  EXPECT_EQ(shared.robots[0].robot.name, "b");
+  ASSERT_TRUE(shared.robots[0].map_from_robot);
+  EXPECT_EQ(shared.robots[0].pairs, 3U);
+  // But not against all evidence.
+  known_before.last[robots[1].robot.map_id] = turned_by(0, 9, 9);
+  EXPECT_FALSE(share(robots, known_before, {}, config_).robots[0].map_from_robot);
+}
+
+TEST_F(SharedMaps, GivenPlacesAreKeptAndMeanThePresentMapOfARobot) {
+  FleetBook book;
+  for (const RobotMap& robot : robots_) {
+    for (const AnyRow& row : history_of(robot)) add(book, row);
+  }
+  book.give("c", turned_by(1, 5, 6));
+  Placements placements = book.placements();
+  EXPECT_EQ(placements.known.size(), 1U);
+  EXPECT_EQ(placements.known.at(robots_[2].robot.map_id).translation_m.x, 5);
+  EXPECT_TRUE(book.placements({robots_[2].robot}).known.empty());
+  std::map<std::string, std::string> kept;
+  for (const auto& [key, value] : book.changes()) kept[key] = value.value_or("");
+  EXPECT_EQ(FleetBook(kept).given().at("c").translation_m.y, 6);
+  EXPECT_EQ(book.forget("c", {}), 1);
+  EXPECT_TRUE(book.given().empty());
+}
+
+TEST_F(SharedMaps, AnOlderIndexIsNoticed) {
+  FleetBook book;
+  const std::vector<AnyRow> rows = history_of(robots_[0]);
+  for (const AnyRow& row : rows) add(book, row);
+  IndexRow older;
+  older.map_id = robots_[0].robot.map_id;
+  older.robot = bytes_of("a");
+  older.version = 1;
+  EXPECT_EQ(book.add(older), FleetBook::Outcome::older);
+  EXPECT_EQ(book.maps()[0].map.list.size(), robots_[0].map.list.size());
+}
+
+TEST(FleetFile, IsNotTheMapOfARobot) {
+  const support::TemporaryFolder folder;
+  const std::filesystem::path own = folder.path() / "a.db";
+  MapFile::open(own, MapMode::update).replace(map_of(room_of(5, 1), 0, 5, {}));
+  try {
+    open_fleet_file(own);
+    ADD_FAILURE() << "taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("is the map of a robot"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(MapFile::open(own, MapMode::read_only).load().list.size(), 5U);
+  EXPECT_NO_THROW(open_fleet_file(folder.path() / "new.db"));
+  EXPECT_NO_THROW(open_fleet_file(folder.path() / "new.db"));
+}
+
 TEST(FleetBook, RefusesWhatIsNotSoundAndTooMuch) {
   FleetBook book;
   LandmarkRow bad = row_of(room_of(1, 3)[0], robot(1, "a"), 1);
   bad.position.x = 1e9;
-  EXPECT_EQ(book.take(bad), FleetBook::Taken::refused);
-  EXPECT_EQ(book.take(bad), FleetBook::Taken::refused);
+  EXPECT_EQ(book.add(bad), FleetBook::Outcome::refused);
+  EXPECT_EQ(book.add(bad), FleetBook::Outcome::refused);
   EXPECT_EQ(book.refused().at(robot(1, "a")).rows, 2);
   EXPECT_TRUE(book.maps().empty());
   for (int i = 0; i < 200; ++i) {
     const LandmarkRow row = row_of(room_of(1, 3)[0], robot(static_cast<std::uint8_t>(i), "a"), 1);
-    book.take(row);
+    book.add(row);
   }
   EXPECT_EQ(book.maps().size(), FleetBook::kMostRobots);
   EXPECT_LE(book.refused().size(), FleetBook::kMostRobots + 1);

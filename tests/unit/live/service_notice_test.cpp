@@ -53,9 +53,10 @@ void expect_told(const Manager& manager) {
   notice.ready();
   notice.note_alive();
   notice.note_alive();  // too soon
-  notice.status("3 objects");
+  notice.status("3 objects\nWATCHDOG=trigger");
   notice.finish();
-  for (const char* const expected : {"READY=1", "WATCHDOG=1", "STATUS=3 objects", "STOPPING=1", ""})
+  for (const char* const expected :
+       {"READY=1", "WATCHDOG=1", "STATUS=3 objects\\nWATCHDOG=trigger", "STOPPING=1", ""})
     EXPECT_EQ(manager.next(), expected);
 }
 

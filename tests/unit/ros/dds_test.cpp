@@ -346,6 +346,7 @@ TEST_F(Dds, AnAgentThatSaysNothingIsNotAlive) {
   EXPECT_FALSE(reader.take_change());
   ASSERT_TRUE(comes_true([&] { return (change = reader.take_change()).has_value(); }, 5s));
   EXPECT_FALSE(change->is_alive);
+  EXPECT_FALSE(change->has_message);
   EXPECT_EQ(change->bytes, key);
   // The next word revives it.
   writer.write(row);
@@ -387,7 +388,7 @@ TEST_F(Dds, AWatchSeesALoopThatHangs) {
   sink->finish();
   EXPECT_TRUE(comes_true([&] {
     const auto state = watch->next(20ms);
-    return !state.agents.at(0).is_alive && state.agents[0].message == "ended";
+    return !state.agents.at(0).is_alive && state.agents[0].has_ended;
   }));
 }
 
