@@ -39,9 +39,10 @@ struct AgentOptions {
 using Deadline = std::optional<live::Clock::time_point>;
 
 Deadline deadline_of(double duration_s) {
-  if (!(duration_s >= 0 && duration_s <= 1e9))
+  if (!(duration_s >= 0 && duration_s <= 1e9)) {
     throw Error("--duration: found " + text_of("%g", duration_s) +
                 ", expected s, 0 ... 1e9 (0: until Ctrl-C)");
+  }
   if (duration_s == 0) return std::nullopt;
   return live::Clock::now() +
          std::chrono::duration_cast<live::Clock::duration>(std::chrono::duration<double>(duration_s));

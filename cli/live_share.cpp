@@ -38,9 +38,10 @@ std::unique_ptr<live::Sink> make_share_sink(const ShareInput& input, const Senso
     return nullptr;
   }
   if (sensors.map.empty()) throw Error("--share: needs --map FILE.db, whose landmarks it shares");
-  if (sensors.map_read_only)
+  if (sensors.map_read_only) {
     throw Error(
         "--share: found --read-only as well, with which nothing tells this run's landmarks from another's");
+  }
   return live::share_map({input.robot, runner.map_id(), source.rig(), domain_of(input.fleet)});
 }
 

@@ -72,7 +72,7 @@ class FleetBook {
   };
   template <class Row, class Keyed, class Key, class Listed>
   Outcome add_to(const Row& row, Robot& robot, Keyed& rows, const Key& key, const Listed& listed);
-  Outcome refuse(const RobotKey& robot, const std::string& why);
+  Outcome refuse(const RobotKey& sender, const std::string& why);
   /// Null if there are too many.
   Robot* robot_for(const RobotKey& key);
   template <class Row>

@@ -329,6 +329,7 @@ struct MapFile::Store {
     try {
       database->exec("ROLLBACK");
     } catch (const SQLite::Exception&) {  // SQLite has rolled back already
+    } catch (const std::bad_alloc&) {     // closing the database rolls back
     }
   }
 

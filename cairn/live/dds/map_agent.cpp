@@ -97,12 +97,10 @@ class MapAgent {
         const Outcome outcome = kept_.book.add(row);
         has_changed_ |= outcome == Outcome::changed;
         if (outcome == Outcome::older) {
-          const std::string name = robot_of(row).name;
           say_once(
-              name +
-              ": its map is older than what it has shared before, as if it was restored from a copy; what it "
-              "shares is not taken until `cairn agent map --forget " +
-              name + "`");
+              robot_of(row).name +
+              ": its map is older than what it has shared before, as if it was restored from a copy; what "
+              "it shares is not taken until it is forgotten (--forget)");
         }
       } catch (const Error&) {  // not such a message: whose it is cannot be told
         ++undecoded_;
@@ -114,9 +112,10 @@ class MapAgent {
     hear_rows_of(landmarks_);
     hear_rows_of(floor_);
     hear_rows_of(index_);
-    for (const auto& [robot, refused] : kept_.book.refused())
+    for (const auto& [robot, refused] : kept_.book.refused()) {
       say_once((robot.name.empty() ? "a robot without a valid name" : robot.name) +
                ": rows are ignored: " + refused.why);
+    }
   }
 
   void say_once(const std::string& line) {

@@ -392,6 +392,57 @@ TEST_F(Dds, AWatchSeesALoopThatHangs) {
   }));
 }
 
+TEST_F(Dds, AWatchWarnsOfTwinsAndOfClocks) {
+  const live::FleetDomain domain{static_cast<std::uint32_t>(std::stoi(std::getenv("ROS_DOMAIN_ID"))) + 110,
+                                 ""};
+  const auto watch = live::fleet_watch(domain);
+  const Participant participant(domain_of_fleet(domain.id, ""));
+  Writer<fleet::AgentRow> writer(participant, live::fleet_topics::kAgents, live::fleet_topics::kAgentRow);
+  fleet::AgentRow row;
+  row.role = "perception";
+  row.name = "a";
+  std::set<std::string> warnings;
+  std::size_t agents = 0;
+  const auto say = [&](std::uint8_t agent, double ahead_s) {
+    row.agent = {agent};
+    const auto now =
+        std::chrono::system_clock::now().time_since_epoch() + std::chrono::duration<double>(ahead_s);
+    row.stamp = time_of({std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()});
+    writer.write(row);
+  };
+  const auto next = [&] {
+    const live::FleetState state = watch->next(50ms);
+    warnings.insert(state.warnings.begin(), state.warnings.end());
+    agents = state.agents.size();
+    return !warnings.empty();
+  };
+  EXPECT_TRUE(comes_true([&] {
+    say(1, 0);
+    return !next() && agents == 1;
+  }));
+  // A second process of this name, for longer than a restart takes.
+  EXPECT_TRUE(comes_true([&] {
+    say(1, 0);
+    say(2, 0);
+    return next();
+  }));
+  EXPECT_EQ(warnings, std::set<std::string>{"perception a: 2 processes of this name"});
+  warnings.clear();
+  row.name = "b";
+  EXPECT_TRUE(comes_true([&] {
+    say(3, 3600);
+    next();
+    return warnings.contains("perception b: its clock is 3600.0 s ahead of this computer's");
+  })) << warnings.size();
+  // What is not sound is not listed.
+  row.name = "\n";
+  for (int i = 0; i < 10; ++i) {
+    say(4, 0);
+    next();
+  }
+  EXPECT_EQ(agents, 3U);
+}
+
 /// Cyclone asks for the key of what comes from the network.
 TEST_F(Dds, ARowThatIsTooShortForItsKeyIsDropped) {
   const Participant here;
