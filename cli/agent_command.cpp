@@ -67,11 +67,8 @@ int keep_map(const AgentOptions& options) {
   how.file = options.file;
   how.domain = domain_of(options.fleet);
   for (const std::string& text : options.places) {
-    const std::size_t equals = std::min(text.find('='), text.size());
-    const std::optional<Pose> pose = pose_on_floor(text.substr(std::min(equals + 1, text.size())));
-    if (!pose) throw Error("--at " + text + ": expected NAME=X,Y,DEG");
-    const std::string robot = fleet::checked_robot(text.substr(0, equals), "--at");
-    if (!how.given.emplace(robot, *pose).second)
+    const auto [name, pose] = named_pose(text);
+    if (!how.given.emplace(fleet::checked_robot(name, "--at"), pose).second)
       throw Error("--at " + text + ": the second pose of this robot, expected one");
   }
   live::ServiceNotice notice;
@@ -131,7 +128,7 @@ Json json_of(const live::FleetState& state) {
       const Pose& pose = *robot.map_from_robot;
       j["x_m"] = pose.translation_m.x;
       j["y_m"] = pose.translation_m.y;
-      j["yaw_deg"] = std::atan2(pose.rotation[3], pose.rotation[0]) * 180 / std::numbers::pi;
+      j["yaw_deg"] = yaw_of(pose) * 180 / std::numbers::pi;
     }
     if (!robot.refusal.empty()) j["refusal"] = robot.refusal;
   }
@@ -155,13 +152,11 @@ std::string table_of(const live::FleetState& state) {
         {"robot in the map", "landmarks", "common", "x m", "y m", "degrees", "heard s ago", "why unknown"});
     for (const live::RobotState& robot : state.robots) {
       const auto& pose = robot.map_from_robot;
-      robots.add(
-          {robot.name, std::to_string(robot.landmarks), std::to_string(robot.pairs),
-           pose ? text_of("%.2f", pose->translation_m.x) : "",
-           pose ? text_of("%.2f", pose->translation_m.y) : "",
-           pose ? text_of("%.1f", std::atan2(pose->rotation[3], pose->rotation[0]) * 180 / std::numbers::pi)
-                : "",
-           robot.heard_s_ago < 0 ? "never" : text_of("%.0f", robot.heard_s_ago), robot.refusal});
+      robots.add({robot.name, std::to_string(robot.landmarks), std::to_string(robot.pairs),
+                  pose ? text_of("%.2f", pose->translation_m.x) : "",
+                  pose ? text_of("%.2f", pose->translation_m.y) : "",
+                  pose ? text_of("%.1f", yaw_of(*pose) * 180 / std::numbers::pi) : "",
+                  robot.heard_s_ago < 0 ? "never" : text_of("%.0f", robot.heard_s_ago), robot.refusal});
     }
     text += "\n" + robots.text();
   }

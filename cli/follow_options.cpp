@@ -3,6 +3,7 @@
 #include "follow_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cmath>
 #include <cstdio>
@@ -37,6 +38,13 @@ std::vector<std::string> SensorInput::given() const {
     if (!file->empty()) names.emplace_back(name);
   }
   return names;
+}
+
+std::pair<std::string, Pose> named_pose(const std::string& text) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  const std::optional<Pose> pose = pose_on_floor(text.substr(std::min(equals + 1, text.size())));
+  if (!pose) throw Error("--at " + text + ": expected NAME=X,Y,DEG");
+  return {text.substr(0, equals), *pose};
 }
 
 void add_sensor_options(CLI::App& app, SensorInput& input) {

@@ -6,6 +6,7 @@
 #include <cairn/sequence/follow_config.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common.hpp"
@@ -22,6 +23,8 @@ FollowConfig resolve_follow(const ConfigOptions& options,
                             KnownGround ground = {});
 /// Of "X,Y,DEGREES": metres, counterclockwise. nullopt if it is something else, or beyond 1e6.
 std::optional<Pose> pose_on_floor(const std::string& text);
+/// "NAME=X,Y,DEG" of --at. Throws Error.
+std::pair<std::string, Pose> named_pose(const std::string& text);
 
 /// Files of other sensors, and the map.
 struct SensorInput {

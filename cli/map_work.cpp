@@ -97,12 +97,10 @@ bool are_copies(const MapFile& file, const MapFile& other) {
 std::vector<std::optional<Pose>> places_of(const MapOptions& options) {
   std::vector<std::optional<Pose>> places(options.others.size());
   for (const std::string& text : options.places) {
-    const std::size_t equals = std::min(text.find('='), text.size());
-    const std::optional<Pose> pose = pose_on_floor(text.substr(std::min(equals + 1, text.size())));
-    if (!pose) throw Error("--at " + text + ": expected NAME=X,Y,DEG");
+    const auto [name, pose] = named_pose(text);
     std::vector<std::size_t> named;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      if (fs::path(options.others[i]).stem() == text.substr(0, equals)) named.push_back(i);
+      if (fs::path(options.others[i]).stem() == name) named.push_back(i);
     }
     if (named.size() != 1)
       throw Error("--at " + text + ": " + count_of(named.size(), "map") +
@@ -211,8 +209,8 @@ int merge_files(const MapOptions& options) {
     const Pose& pose = *merged.placed[i].map_from_other;
     std::cout << options.others[i] << ": at x " << text_of("%.2f", pose.translation_m.x) << " m, y "
               << text_of("%.2f", pose.translation_m.y) << " m, "
-              << text_of("%.1f", std::atan2(pose.rotation[3], pose.rotation[0]) * 180 / std::numbers::pi)
-              << " degrees; " << count_of(merged.placed[i].pairs.size(), "common landmark") << "\n";
+              << text_of("%.1f", yaw_of(pose) * 180 / std::numbers::pi) << " degrees; "
+              << count_of(merged.placed[i].pairs.size(), "common landmark") << "\n";
   }
   return 0;
 }

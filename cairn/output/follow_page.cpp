@@ -60,8 +60,7 @@ void keep_covariance_of_place(Json& pose) {
 /// The odometry frame in the map: a rotation about z and a translation. Null if unknown.
 Json place_of_odometry(const std::optional<Pose>& pose) {
   if (!pose) return nullptr;
-  return {{"yaw_rad", rounded(std::atan2(pose->rotation[3], pose->rotation[0]))},
-          {"position_m", rounded(pose->translation_m)}};
+  return {{"yaw_rad", rounded(yaw_of(*pose))}, {"position_m", rounded(pose->translation_m)}};
 }
 
 /// `line`: of tracks.jsonl, without frame_id.

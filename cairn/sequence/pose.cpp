@@ -68,6 +68,10 @@ double angle_of(const Pose& pose) {
   return length(rotation_vector(pose));
 }
 
+double yaw_of(const Pose& pose) {
+  return std::atan2(pose.rotation[3], pose.rotation[0]);
+}
+
 Point3 rotation_vector(const Pose& pose) {
   const Eigen::AngleAxisd turn(matrix(pose.rotation));
   const Eigen::Vector3d v = turn.axis() * turn.angle();

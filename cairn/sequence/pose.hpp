@@ -65,6 +65,8 @@ std::array<double, 4> quaternion(const Pose& pose);
 Pose pose_of(Point3 translation_m, const std::array<double, 4>& quaternion);
 /// The angle of the rotation, in rad, 0 … π.
 double angle_of(const Pose& pose);
+/// The rotation about z of a pose on a floor, counter-clockwise, in rad.
+double yaw_of(const Pose& pose);
 /// The axis of the rotation times its angle, in rad.
 Point3 rotation_vector(const Pose& pose);
 /// The rotation about an axis by its length in rad, without a translation.

@@ -264,7 +264,7 @@ bool suits(const Pose& map_from_odom, const MapLocation& guess) {
   const Pose apart = map_from_odom * inverse(guess.map_from_odom);
   Eigen::Vector4d off;
   off << vector(map_from_odom(guess.camera_in_odom_m) - guess.map_from_odom(guess.camera_in_odom_m)),
-      std::atan2(apart.rotation[3], apart.rotation[0]);
+      yaw_of(apart);
   return off.dot(matrix(guess.covariance).ldlt().solve(off)) <= kChi2Of4At95;
 }
 
@@ -645,7 +645,7 @@ bool is_shared(const Landmark& a, const Landmark& b, const LandmarksConfig& conf
 
 /// The looks as seen from the axes of the map that `pose` leads to.
 std::vector<LandmarkLook> turned(std::vector<LandmarkLook> looks, const Pose& pose) {
-  const double yaw = std::atan2(pose.rotation[3], pose.rotation[0]);
+  const double yaw = yaw_of(pose);
   const int turn = static_cast<int>(std::lround(yaw / (std::numbers::pi / 4)));
   for (LandmarkLook& look : looks) look.octant = (look.octant + turn + 8) % 8;
   std::sort(looks.begin(), looks.end(),

@@ -25,11 +25,6 @@ constexpr auto kTransforms = 500ms;   // between two messages of /tf
 constexpr auto kBetweenWrites = 10s;  // to the file
 constexpr int kRestAfterSharing = 4;  // times as long as sharing took
 
-/// The yaw, in rad.
-double yaw_of(const Pose& pose) {
-  return std::atan2(pose.rotation[3], pose.rotation[0]);
-}
-
 std::string pose_text(const Pose& pose) {
   std::array<char, 96> text{};
   std::snprintf(text.data(), text.size(), "x %.2f m, y %.2f m, %.1f degrees", pose.translation_m.x,
