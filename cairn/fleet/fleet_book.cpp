@@ -100,12 +100,7 @@ void FleetBook::restore(const std::string& bytes) {
 }
 
 FleetBook::Outcome FleetBook::refuse(const RobotKey& sender, const std::string& why) {
-  RobotKey robot = sender;
-  try {
-    (void)checked_robot(robot.name, "");
-  } catch (const Error&) {  // foreign bytes are not repeated
-    robot = {};
-  }
+  const RobotKey robot = is_robot_name(sender.name) ? sender : RobotKey{};  // foreign bytes are not repeated
   // Names are foreign, too: as many as robots are remembered.
   if (refused_.size() < kMostRobots || refused_.contains(robot)) {
     Refused& refused = refused_[robot];
@@ -140,33 +135,39 @@ FleetBook::Outcome FleetBook::add_to(const Row& row, Robot& robot, Keyed& rows, 
   return Outcome::changed;
 }
 
-FleetBook::Outcome FleetBook::add(const LandmarkRow& row) {
+template <class Row, class Add>
+FleetBook::Outcome FleetBook::if_sound(const Row& row, const Add& add) {
   if (const std::string fault = fault_of(row); !fault.empty()) return refuse(robot_of(row), fault);
   Robot* const robot = robot_for(robot_of(row));
   if (robot == nullptr) return refuse(robot_of(row), "more than " + std::to_string(kMostRobots) + " robots");
-  return add_to(row, *robot, robot->landmarks, row.id, robot->listed);
+  return add(*robot);
+}
+
+FleetBook::Outcome FleetBook::add(const LandmarkRow& row) {
+  return if_sound(row,
+                  [&](Robot& robot) { return add_to(row, robot, robot.landmarks, row.id, robot.listed); });
 }
 
 FleetBook::Outcome FleetBook::add(const FloorRow& row) {
-  if (const std::string fault = fault_of(row); !fault.empty()) return refuse(robot_of(row), fault);
-  Robot* const robot = robot_for(robot_of(row));
-  if (robot == nullptr) return refuse(robot_of(row), "more than " + std::to_string(kMostRobots) + " robots");
-  return add_to(row, *robot, robot->floor, std::pair(row.x, row.y), robot->listed_floor);
+  return if_sound(row, [&](Robot& robot) {
+    return add_to(row, robot, robot.floor, std::pair(row.x, row.y), robot.listed_floor);
+  });
 }
 
 FleetBook::Outcome FleetBook::add(const IndexRow& row) {
-  if (const std::string fault = fault_of(row); !fault.empty()) return refuse(robot_of(row), fault);
-  Robot* const robot = robot_for(robot_of(row));
-  if (robot == nullptr) return refuse(robot_of(row), "more than " + std::to_string(kMostRobots) + " robots");
+  return if_sound(row, [&](Robot& robot) { return add_index(row, robot); });
+}
+
+FleetBook::Outcome FleetBook::add_index(const IndexRow& row, Robot& robot) {
   if (row.landmarks.size() > kMostRows || row.tile_x.size() > kMostRows)
     return refuse(robot_of(row), "more than " + std::to_string(kMostRows) + " rows");
-  if (robot->index && robot->index->version >= row.version)
-    return robot->index->version > row.version ? Outcome::older : Outcome::known;
-  robot->index = row;
-  robot->listed = {row.landmarks.begin(), row.landmarks.end()};
-  robot->listed_floor.clear();
+  if (robot.index && robot.index->version >= row.version)
+    return robot.index->version > row.version ? Outcome::older : Outcome::known;
+  robot.index = row;
+  robot.listed = {row.landmarks.begin(), row.landmarks.end()};
+  robot.listed_floor.clear();
   for (std::size_t i = 0; i < row.tile_x.size(); ++i)
-    robot->listed_floor.emplace(row.tile_x[i], row.tile_y[i]);
+    robot.listed_floor.emplace(row.tile_x[i], row.tile_y[i]);
   note(key_of(row), row);
   const auto drop = [&](auto& rows, const auto& listed) {
     std::erase_if(rows, [&](const auto& known) {
@@ -175,8 +176,8 @@ FleetBook::Outcome FleetBook::add(const IndexRow& row) {
       return true;
     });
   };
-  drop(robot->landmarks, robot->listed);
-  drop(robot->floor, robot->listed_floor);
+  drop(robot.landmarks, robot.listed);
+  drop(robot.floor, robot.listed_floor);
   return Outcome::changed;
 }
 

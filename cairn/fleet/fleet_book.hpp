@@ -70,8 +70,12 @@ class FleetBook {
     std::set<std::int64_t> listed;  // of the index
     std::set<std::pair<int, int>> listed_floor;
   };
+  /// add(robot) for a sound row of a robot that there is room for.
+  template <class Row, class Add>
+  Outcome if_sound(const Row& row, const Add& add);
   template <class Row, class Keyed, class Key, class Listed>
   Outcome add_to(const Row& row, Robot& robot, Keyed& rows, const Key& key, const Listed& listed);
+  Outcome add_index(const IndexRow& row, Robot& robot);
   Outcome refuse(const RobotKey& sender, const std::string& why);
   /// Null if there are too many.
   Robot* robot_for(const RobotKey& key);

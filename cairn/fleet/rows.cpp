@@ -22,12 +22,6 @@ constexpr std::size_t kMostLooks = 8;
 constexpr std::int64_t kLastId = std::int64_t{1} << 53U;
 constexpr std::size_t kRobotLength = std::tuple_size_v<NameBytes>;
 
-bool is_robot_name(const std::string& name) {
-  const auto is_lower = [](char c) { return c >= 'a' && c <= 'z'; };
-  return !name.empty() && name.size() <= kRobotLength && name != "map" && is_lower(name[0]) &&
-         std::ranges::all_of(name, [&](char c) { return is_lower(c) || (c >= '0' && c <= '9') || c == '_'; });
-}
-
 template <class Row>
 std::string robot_fault(const Row& row) {
   const std::string name = robot_of(row).name;
@@ -109,6 +103,12 @@ std::string digits_of(const MapId& id) {
     digits += "0123456789abcdef"[byte % 16];
   }
   return digits;
+}
+
+bool is_robot_name(const std::string& name) {
+  const auto is_lower = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !name.empty() && name.size() <= kRobotLength && name != "map" && is_lower(name[0]) &&
+         std::ranges::all_of(name, [&](char c) { return is_lower(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 std::string checked_robot(const std::string& name, const std::string& option) {

@@ -26,7 +26,9 @@ struct RobotKey {
 /// Of 32 hexadecimal digits (MapFile::map_id()); nullopt for anything else.
 std::optional<MapId> map_id_of(const std::string& digits);
 std::string digits_of(const MapId& id);
-/// Throws Error naming `option` unless it is [a-z][a-z0-9_]{0,31}, and not "map", the name of map agents.
+/// Whether it is [a-z][a-z0-9_]{0,31}, and not "map", the name of map agents.
+bool is_robot_name(const std::string& name);
+/// The name. Throws Error naming `option` unless is_robot_name().
 std::string checked_robot(const std::string& name, const std::string& option);
 NameBytes bytes_of(const std::string& robot);
 

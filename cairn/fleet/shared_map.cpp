@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <set>
 #include <utility>
 
@@ -23,6 +24,10 @@ struct Copies {
 std::vector<Copies> copies_of(const std::vector<RobotMap>& robots, const Placements& placements,
                               const LandmarksConfig& config) {
   std::vector<Copies> all;
+  const auto place_in = [](const std::map<MapId, Pose>& places, const MapId& id) {
+    const auto at = places.find(id);
+    return at == places.end() ? std::nullopt : std::optional(at->second);
+  };
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const auto& [robot, map] = robots[i];
     const bool is_copy = !all.empty() && all.back().map_id == robot.map_id;
@@ -30,6 +35,8 @@ std::vector<Copies> copies_of(const std::vector<RobotMap>& robots, const Placeme
       Copies& first = all.emplace_back();
       first.map_id = robot.map_id;
       first.map = map;
+      first.place = place_in(placements.known, robot.map_id);
+      first.guess = place_in(placements.last, robot.map_id);
       for (const Landmark& landmark : map.list) first.of[landmark.id] = {{robot, landmark.id}};
     }
     Copies& copies = all.back();
@@ -40,14 +47,6 @@ std::vector<Copies> copies_of(const std::vector<RobotMap>& robots, const Placeme
       for (const LandmarkPair& pair : merged.landmarks)
         copies.of[pair.landmark].push_back({robot, LandmarkId{number(pair.track)}});
     }
-  }
-  const auto place_in = [](const std::map<MapId, Pose>& places, const MapId& id) {
-    const auto at = places.find(id);
-    return at == places.end() ? std::nullopt : std::optional(at->second);
-  };
-  for (Copies& copies : all) {
-    copies.place = place_in(placements.known, copies.map_id);
-    copies.guess = place_in(placements.last, copies.map_id);
   }
   return all;
 }
@@ -107,16 +106,11 @@ void find_parts(const LandmarkMap& map, std::vector<SharedLandmark>& landmarks) 
 }  // namespace
 
 std::optional<MapId> origin_of(const std::vector<RobotMap>& robots) {
-  const RobotMap* best = nullptr;
-  for (const RobotMap& robot : robots) {
-    if (robot.map.list.empty()) continue;
-    const auto rank = [](const RobotMap& r) { return std::pair(r.map.list.size(), r.robot); };
-    const bool is_better =
-        best == nullptr || rank(robot).first > rank(*best).first ||
-        (rank(robot).first == rank(*best).first && rank(robot).second < rank(*best).second);
-    if (is_better) best = &robot;
-  }
-  return best == nullptr ? std::nullopt : std::optional(best->robot.map_id);
+  const auto best = std::ranges::min_element(robots, {}, [](const RobotMap& robot) {
+    return std::pair(-static_cast<std::ptrdiff_t>(robot.map.list.size()), robot.robot);
+  });
+  if (best == robots.end() || best->map.list.empty()) return std::nullopt;
+  return best->robot.map_id;
 }
 
 SharedMap share(std::vector<RobotMap> robots, const Placements& placements, const SharedIds& before,

@@ -43,6 +43,11 @@ AgentVoice::AgentVoice(const ros::Participant& participant, const std::string& r
   row.map_id = map_id;
 }
 
+ros::Time wall_clock() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return ros::time_of({std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()});
+}
+
 fleet::MapId agent_of(const ros::Bytes& row) {
   constexpr std::size_t kHeader = 4;
   fleet::MapId agent{};
@@ -61,8 +66,7 @@ void AgentVoice::end(ros::DiagnosticStatus status) {
 }
 
 void AgentVoice::send(ros::DiagnosticStatus status) {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  row.stamp = ros::time_of({std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()});
+  row.stamp = wall_clock();
   row.level = std::to_integer<std::uint8_t>(status.level);
   row.message = status.message;
   writer_.write(row);

@@ -41,6 +41,9 @@ inline constexpr ros::ReaderQos kReadAgents{.reliable = true, .depth = 1};
 
 ros::Participant fleet_participant(const FleetDomain& domain);
 
+/// Now, by the clock of this computer.
+ros::Time wall_clock();
+
 /// The key of a row of an agent. Throws Error if there is none.
 fleet::MapId agent_of(const ros::Bytes& row);
 

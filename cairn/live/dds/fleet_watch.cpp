@@ -79,10 +79,7 @@ class Watch : public FleetWatch {
     const auto now = Clock::now();
     Agent& agent = agents_[id];
     if (!agent.is_alive || agent.row.role.empty()) agent.began = now;
-    const auto wall = std::chrono::system_clock::now().time_since_epoch();
-    const Stamp sent = ros::stamp_of(row.stamp);
-    agent.delays_s.push_back(std::chrono::duration<double>(wall).count() -
-                             static_cast<double>(sent.ns) * 1e-9);
+    agent.delays_s.push_back(seconds_between(ros::stamp_of(row.stamp), ros::stamp_of(wall_clock())));
     if (agent.delays_s.size() > kDelays) agent.delays_s.pop_front();
     agent.is_alive = !row.has_ended;
     agent.heard = now;

@@ -32,11 +32,6 @@ std::string pose_text(const Pose& pose) {
   return text.data();
 }
 
-ros::Time wall_clock() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return ros::time_of({std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()});
-}
-
 class MapAgent {
  public:
   explicit MapAgent(const MapAgentOptions& options)
@@ -283,7 +278,7 @@ class MapAgent {
     std::size_t lost = 0;
     int ignored = undecoded_;
     for (const fleet::KnownRobotRow& row : voice_.row.robots) {
-      lost += row.is_located || row.refusal == "a former map of this robot" ? 0 : 1;
+      lost += row.is_located || is_former({row.map_id, row.name}) ? 0 : 1;
       ignored += row.ignored;
       status.values.push_back({"robot " + row.name, row.is_located ? "located" : row.refusal});
     }
