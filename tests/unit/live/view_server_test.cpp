@@ -119,7 +119,9 @@ struct Served {
     return "Cookie: theme=dark; cairn_" + std::to_string(port) + "=" + token + "\r\n";
   }
   [[nodiscard]] std::string with_token(const std::string& path = "/") const {
-    return path + "?token=" + kToken;
+    std::string all = path;  // GCC 12 falsely warns of a chain of +
+    all += "?token=";
+    return all += kToken;
   }
   [[nodiscard]] WebSocket connect(const std::string& subprotocol = "foxglove.sdk.v1") const {
     return WebSocket(port, with_token(), subprotocol);
