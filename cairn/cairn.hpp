@@ -37,6 +37,7 @@
 #include <cairn/regions/object_hints.hpp>      // hint_objects
 #include <cairn/regions/merge_tree.hpp>        // grow_merge_tree
 #include <cairn/regions/choose_objects.hpp>    // choose_objects, object_regions
+#include <cairn/regions/refine_disparity.hpp>  // refine_disparity, likely_disparities
 #include <cairn/objects/fuse.hpp>                // fuse
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/objects/locate.hpp>              // locate

@@ -7,8 +7,10 @@
 #include <cairn/io/point_cloud.hpp>
 #include <cairn/output/overlay.hpp>
 #include <cairn/pipeline/segment.hpp>
+#include <cairn/stereo/confidence.hpp>
 #include <filesystem>
 #include <iostream>
+#include <utility>
 
 #include "commands.hpp"
 #include "common.hpp"
@@ -26,6 +28,8 @@ struct DisparityOptions {
   std::string confidence;
   std::string ply;
   std::string view;
+  bool refined = false;
+  float min_confidence = kMinRefined;
 };
 
 /// Checked first, so that a bad name does not cost the time of matching.
@@ -76,6 +80,13 @@ std::string describe(const StereoResult& scene, const LoadedFrame& loaded, doubl
   return all;
 }
 
+/// The refined disparities in place of the matched ones.
+StereoResult refined(Frame frame, float min_confidence, const Exec& exec) {
+  frame.disparity = likely_disparities(frame.refined, frame.disparity.reject, min_confidence, exec);
+  frame.confidence = without_holes(std::move(frame.refined.confidence), frame.disparity.reject);
+  return frame;
+}
+
 int estimate(const DisparityOptions& options) {
   const std::vector<io::FrameFiles> frames = frames_of(options.input);
   if (frames.size() != 1) {
@@ -91,9 +102,17 @@ int estimate(const DisparityOptions& options) {
   if (!options.view.empty()) check_png(options.view, "the view");
   if (!options.ply.empty()) check_ply(options.ply, loaded);
   keep_inputs({options.output, options.confidence, options.view, options.ply}, frames.front(), options.input);
+  if (!(options.min_confidence >= 0 && options.min_confidence <= 1)) {
+    throw Error("--min-confidence: found " + text_of("%g", double(options.min_confidence)) +
+                ", expected 0 … 1");
+  }
+  if (options.refined && loaded.config.pipeline.method != Method::region_tree)
+    throw Error("--refined: found pipeline.method=paper, expected region_tree");
   const Stopwatch watch(exec);
-  const StereoResult scene = estimate_disparity(
-      StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb), loaded.rig, loaded.config, exec);
+  const auto pair = StereoPair::from(loaded.left.gray, loaded.right, loaded.left.rgb);
+  const StereoResult scene =
+      options.refined ? refined(segment(pair, loaded.rig, loaded.config, exec), options.min_confidence, exec)
+                      : estimate_disparity(pair, loaded.rig, loaded.config, exec);
   if (!options.output.empty()) io::save_disparity(options.output, scene.disparity.disparity_px);
   if (!options.confidence.empty()) output::save_confidence(options.confidence, scene.confidence);
   if (!options.view.empty()) {
@@ -127,6 +146,15 @@ Work declare_disparity(CLI::App& app) {
       ->type_name("FILE");
   app.add_option("--ply", options->ply, "file.ply: coloured point cloud in metres; needs a calibration")
       ->type_name("FILE");
+  CLI::Option* const refined = app.add_flag(
+      "--refined", options->refined,
+      "the likeliest disparity of each pixel: gross errors corrected, holes filled; the confidence "
+      "is that of these");
+  app.add_option("--min-confidence", options->min_confidence,
+                 "least confidence of a refined disparity; less likely ones are holes")
+      ->capture_default_str()
+      ->type_name("0 … 1")
+      ->needs(refined);
   return [options] { return estimate(*options); };
 }
 

@@ -133,6 +133,9 @@ if [[ $pictures == yes ]]; then
   "$build_dir/cairn" segment data/samples --html -o "$scratch/results" >/dev/null
   "$build_dir/cairn" evaluate "$scratch/results" data/samples --html "$scratch" >/dev/null
   for kind in overlay disparity_view; do picture "$scratch/results/four_in_a_row/$kind.png" $kind; done
+  "$build_dir/cairn" disparity data/samples/overlap --view "$scratch/matched.png" >/dev/null
+  "$build_dir/cairn" disparity data/samples/overlap --refined --view "$scratch/refined.png" >/dev/null
+  for kind in matched refined; do picture "$scratch/$kind.png" "disparity_$kind"; done
   "$build_dir/cairn" segment data/outdoors -o "$scratch/outdoors" >/dev/null
   for place in street yard lawn; do picture "$scratch/outdoors/$place/overlay.png" "outdoors_$place"; done
   if command -v chromium >/dev/null; then

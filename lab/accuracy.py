@@ -123,6 +123,7 @@ def load_frames(folder):
     return [TrueFrame(f) for f in sorted(folder.iterdir()) if (f / "left.png").exists()]
 
 
+MIN_REFINED = 0.3  # kMinRefined of cairn/regions/refine_disparity.hpp
 Score = collections.namedtuple("Score", "objects partial disparity ms")
 THREAD = threading.local()
 
@@ -353,6 +354,15 @@ def by_cairn(config, frame):
     return made.disparity, ms
 
 
+def by_refinement(frame):
+    """As `cairn disparity --refined`."""
+    def work(one):
+        made = frame.segment(None, grey=True, exec=one)
+        return cairn.likely_disparities(made.refined, made.reject, MIN_REFINED).disparity_px
+
+    return on_one_core(work)
+
+
 def searched_by_opencv(num_disparities):
     """Rounded up: OpenCV searches multiples of 16."""
     return (num_disparities + 15) // 16 * 16
@@ -374,6 +384,7 @@ def middlebury(data, threads):
     frames = [frame for folder in MIDDLEBURY for frame in load_frames(data / folder)]
     version, theirs = opencv_matchers()
     matchers = {f"cairn, `{p}`": functools.partial(by_cairn, cairn.Config(p)) for p in COLOURS}
+    matchers["cairn, `default`, refined"] = by_refinement
     matchers.update({f"OpenCV {name}": functools.partial(by_opencv, prepare) for name, (_, prepare) in theirs.items()})
     errors = {name: on_all(frames, functools.partial(errors_of, match), threads) for name, match in matchers.items()}
 
@@ -387,7 +398,7 @@ def middlebury(data, threads):
     pairs = [[frame.name, *(pair(errors[name][i][0][1]) for name in matchers)] for i, frame in enumerate(frames)]
     return f"""## Disparity on Middlebury
 
-Means over {len(frames)} pairs of the Middlebury collections of 2001 to 2014, over the pixels visible to both cameras (Motorcycle: all pixels with truth); OpenCV {version} in the same run, grey images for all. bad-t: share of the matched pixels that are off by more than t px; with holes: share of all pixels, with holes counted as bad.
+Means over {len(frames)} pairs of the Middlebury collections of 2001 to 2014, over the pixels visible to both cameras (Motorcycle: all pixels with truth); OpenCV {version} in the same run, grey images for all. bad-t: share of the matched pixels that are off by more than t px; with holes: share of all pixels, with holes counted as bad. *Refined*: the whole of [`cairn disparity --refined`](stages/refinement.md), objects included; the others are matchers alone.
 
 Only columns x ≥ the number of disparities, since OpenCV's matchers leave the others empty:
 

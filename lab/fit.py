@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the trees that score regions and those that correct the disparity of an object (cairn/fitted/*.bin).
+"""Fits the trees that score regions, those that choose planes of disparity, and those that correct the disparity of an object
+(cairn/fitted/*.bin).
 
 fit.py TOOL WORLDS [--data DATA] [--yardstick FOLDER] [--folds N] [--work FOLDER] [--hints FILE] [--out FOLDER] [--page FILE]
 It needs the network that fit_hints.py writes to the work folder, and worlds that this network has not seen: trees
 fitted to hints of a network that has would trust them too much. fit.py TOOL WORLDS --ablation FILE: refits without
 each kind of cue in turn, and reports the gain of each. fit.py TOOL WORLDS --distances [--out FOLDER]: fits only the trees
-that correct disparities, to the objects that the library finds.
+that correct disparities, to the objects that the library finds. --planes: fits only the trees that choose planes, likewise.
 
-Gradient boosting fits two scores and a correction: whether two neighbouring regions belong to the same object, on the pairs that occur
+Gradient boosting fits three scores and a correction: whether two neighbouring regions belong to the same object, on the pairs that occur
 while the merge tree grows; whether a region is a whole object, on the regions of such trees; and how far
 the disparity of a found object is from the true one. Which pairs and regions occur depends on the first score, so it is fitted twice. Regions always come from trees grown by a fit that has
 not seen their scene (cross-validation in `--folds` folds); so does every figure printed for the fit set. The yardstick and
@@ -33,6 +34,8 @@ PAIRS_KEPT = 0.2  # share of all pairs, of which there are millions
 PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 400, 4
 BIAS_TREES, BIAS_DEPTH = 60, 4
+PLANE_TREES, PLANE_DEPTH = 100, 5
+PLANES_KEPT = 0.3  # share of all planes that were judged
 DOUBT = 0.08  # px, kDoubt of cairn/objects/refine_objects.cpp
 MOST_CORRECTION = 1  # px, kMaxBias there
 LARGEST_ERROR = 1.2  # px; larger ones are mistakes of the matching, which no feature predicts
@@ -177,7 +180,8 @@ class Fitting:
     def __init__(self, tool, work, hints, folds, sets):
         self.tool, self.work, self.hints, self.folds = tool, work, hints, folds
         names = subprocess.run([tool, "--names"], capture_output=True, text=True, check=True).stdout
-        self.pair_features, self.region_features, self.bias_features = (part.splitlines() for part in names.split("\n\n"))
+        self.pair_features, self.region_features, self.bias_features, self.plane_features = (
+            part.splitlines() for part in names.split("\n\n"))
         self.gains = {}
         self.without = ()
         self.met_by_edges = False
@@ -204,7 +208,8 @@ class Fitting:
             heads.append(head)
             values.append(all_[:, 3:])
         values = np.concatenate(values)
-        names = {"regions": self.region_features, "bias": self.bias_features}.get(name, self.pair_features)
+        names = {"regions": self.region_features, "bias": self.bias_features, "planes": self.plane_features}.get(
+            name, self.pair_features)
         for i, feature in enumerate(names):
             # Features from hints count as cues of the hints only.
             if any(word in feature for word in self.without) and ("hints:" in self.without or "hints:" not in feature):
@@ -257,6 +262,16 @@ class Fitting:
             model.write(self.model("whole_object", fold))
             self.gains["whole_object"] = shares_of(model.gains, self.region_features)
             say(f"regions, without fold {fold}: {take.sum()} of them")
+
+    def fit_planes(self, trees):
+        """trees(i): the files of job i. The label is the share of the pixels that are right on the plane."""
+        self.run(trees, "--planes", self.work / "planes@")
+        head, features = self.records("planes", len(self.plane_features), PLANES_KEPT)
+        weights = self.weight[head[:, 0].astype(int)] * np.sqrt(head[:, 2])
+        model = fitted(head[:, 1], weights / weights.mean(), features, (PLANE_TREES, PLANE_DEPTH, 20, 0.12))
+        model.write(self.model("right_plane", "all"))
+        self.gains["right_plane"] = shares_of(model.gains, self.plane_features)
+        say(f"planes: {len(head)} of them")
 
     def fit_bias(self, trees, sequences, checked_jobs):
         """Fits the trees that correct the disparities of found objects. Returns a table of the errors before and after:
@@ -480,6 +495,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn)")
     parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
     parser.add_argument("--distances", action="store_true", help="fit only the trees that correct disparities")
+    parser.add_argument("--planes", action="store_true", help="fit only the trees that choose planes of disparity")
     parser.add_argument("--distances-page", type=pathlib.Path,
                         help="where their report is written (docs/fitted_distances.md)")
     parser.add_argument("--ablation", type=pathlib.Path, help="where the ablation report is written")
@@ -501,8 +517,12 @@ def main():
         nodes = [(int(f), int(b), float(v)) for f, b, v in (line.split() for line in lines[2:] if line)]
         fitted_files.write_trees(arguments.out / f"{kind}.bin", float(lines[0].split()[0]), [int(v) for v in lines[1].split()], nodes)
 
+    fitting.of_library = arguments.distances or arguments.planes
+    if arguments.planes:
+        fitting.fit_planes(lambda i: ("-", "-"))
+        print(gains_table(fitting, "right_plane", "feature"))
+        return write_fitted("right_plane")
     if arguments.distances:
-        fitting.of_library = True
         distances = fitting.fit_bias(lambda i, jobs: ("-", "-"), tracked, checked)
     else:
         fitting.fit_pairs()
@@ -519,6 +539,8 @@ def main():
                 arguments.page.write_text(page(fitting, sets, reports, score))
         write_fitted("same_thing")
         write_fitted("whole_object")
+        fitting.fit_planes(fitting.of_fold)
+        write_fitted("right_plane")
     print(distances)
     write_fitted("disparity_bias")
     if arguments.distances_page:

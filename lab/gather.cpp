@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // fitting --names: prints the names of the features.
-// fitting JOBS [--inputs FILE] [--pairs FILE] [--regions FILE] [--bias FILE] [--min-score S]: gathers the data
+// fitting JOBS [--inputs FILE] [--pairs FILE] [--regions FILE] [--bias FILE] [--planes FILE] [--min-score S]: gathers the data
 // for fit_hints.py and fit.py, and measures how well the result performs.
 //
 // Each line of JOBS is the folder of a frame, `colour` or `grey`, and three files: a fitted network and two
@@ -11,7 +11,8 @@
 // the same object, how pure they are, and the features; for each region that may be an object, the job's
 // number, its greatest IoU with a true object, whether the truth is partial, and the features; for each object
 // that was found, the job's number, the true disparity minus the measured one, the latter's px per metre of
-// depth, and the features of its bias; for the inputs, see record_input().
+// depth, and the features of its bias; for each plane that a group of pixels may take, the job's number, the share
+// of pixels that are right then, their number, and the features; for the inputs, see record_input().
 #include <cairn/cairn.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <cairn/regions/choose_objects.hpp>
@@ -72,6 +73,7 @@ struct Files {
   std::ofstream regions;
   std::ofstream inputs;
   std::ofstream bias;
+  std::ofstream planes;
 };
 
 template <std::size_t N>
@@ -254,6 +256,21 @@ void record_bias(std::ofstream& file, int job, const TrueFrame& frame, const Obj
   }
 }
 
+/// Right: within 1 px of the true disparity.
+void record_plane(std::ofstream& file, int job, const JudgedPlane& judged, View<const float> truth_px) {
+  int known = 0;
+  int right = 0;
+  for (const SuperpixelPixel& pixel : judged.pixels) {
+    const float truth = truth_px(pixel.x, pixel.y);
+    if (std::isnan(truth)) continue;
+    ++known;
+    right += std::abs(disparity_on(judged.plane, pixel) - truth) <= 1 ? 1 : 0;
+  }
+  if (known > 0)
+    record(file, job, static_cast<float>(right) / static_cast<float>(known), static_cast<float>(known),
+           judged.features);
+}
+
 void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, const ChosenObjects& chosen,
                  double milliseconds) {
   int right = 0;
@@ -316,6 +333,14 @@ void work(const Job& of, float min_score, Files& files) {
     const Objects objects = measure(groups.labels, chosen.scores, disparity, in.left, exec);
     record_bias(files.bias, job, frame, objects, disparity, in.right, exec);
   }
+  if (files.planes.is_open() && !frame.truth_px.empty()) {
+    const DisparityMap& disparity = cut.match.stereo.disparity;
+    const Image<float> confidence =
+        estimate_confidence(cut.match.matches, disparity, confidence_model(config.match.method), exec);
+    refine_disparity(
+        {superpixels, tree, chosen, cut.cues(in.left), confidence}, FittedTrees{}, exec,
+        [&](const JudgedPlane& judged) { record_plane(files.planes, job, judged, frame.truth_px); });
+  }
   Image<ObjectId> ours(left.size());
   for (int y = 0; y < left.height(); ++y) {
     for (int x = 0; x < left.width(); ++x)
@@ -325,13 +350,15 @@ void work(const Job& of, float min_score, Files& files) {
 }
 
 /// The features, one per line: those of pairs, an empty line, those of regions, an empty line, those of the
-/// bias.
+/// bias, an empty line, those of planes.
 int print_names() {
   for (const std::string_view name : merge_feature_names()) std::cout << name << '\n';
   std::cout << '\n';
   for (const std::string_view name : object_feature_names()) std::cout << name << '\n';
   std::cout << '\n';
   for (const std::string_view name : bias_feature_names()) std::cout << name << '\n';
+  std::cout << '\n';
+  for (const std::string_view name : plane_feature_names()) std::cout << name << '\n';
   return 0;
 }
 
@@ -346,6 +373,7 @@ int run(std::span<char*> arguments) {
     if (option == "--regions") files.regions.open(value, std::ios::binary);
     if (option == "--inputs") files.inputs.open(value, std::ios::binary);
     if (option == "--bias") files.bias.open(value, std::ios::binary);
+    if (option == "--planes") files.planes.open(value, std::ios::binary);
     if (option == "--min-score") min_score = std::stof(value);
   }
   std::ifstream jobs(arguments[1]);

@@ -51,6 +51,49 @@ class BackgroundRow {
   std::vector<float> barrier_;
 };
 
+/// The disparities of a row, with the likely ones of the refined in their place.
+class SeenRow {
+ public:
+  explicit SeenRow(const ObstacleCues& cues)
+      : cues_(cues),
+        surfaces_(cues.surface_disparity_px.empty() ? cues.disparity.disparity_px.view()
+                                                    : cues.surface_disparity_px),
+        all_trusted_(cues.confidence.empty() ? slot(surfaces_.width()) : 0, 1.0F) {
+    if (cues.refined_px.empty()) return;
+    for (std::vector<float>* const buffer : {&own_disparity_, &own_surface_, &own_confidence_})
+      buffer->resize(slot(surfaces_.width()));
+  }
+  void look_at(int y) {
+    disparity_ = cues_.disparity.disparity_px.row(y);
+    surface_ = surfaces_.row(y);
+    confidence_ = cues_.confidence.empty() ? all_trusted_.data() : cues_.confidence.row(y);
+    if (cues_.refined_px.empty()) return;
+    const float* const refined = cues_.refined_px.row(y);
+    const float* const likely = cues_.refined_confidence.row(y);
+    for (int x = 0; x < surfaces_.width(); ++x) {
+      const bool better = likely[x] >= kLikelyRefined;
+      own_disparity_[slot(x)] = better ? refined[x] : disparity_[x];
+      own_surface_[slot(x)] = better ? refined[x] : surface_[x];
+      own_confidence_[slot(x)] = better ? likely[x] : confidence_[x];
+    }
+    disparity_ = own_disparity_.data();
+    surface_ = own_surface_.data();
+    confidence_ = own_confidence_.data();
+  }
+  [[nodiscard]] const float* disparity_px() const { return disparity_; }
+  [[nodiscard]] const float* surface_px() const { return surface_; }
+  [[nodiscard]] const float* confidence() const { return confidence_; }
+
+ private:
+  const ObstacleCues& cues_;
+  View<const float> surfaces_;
+  std::vector<float> all_trusted_;
+  std::vector<float> own_disparity_, own_surface_, own_confidence_;
+  const float* disparity_ = nullptr;
+  const float* surface_ = nullptr;
+  const float* confidence_ = nullptr;
+};
+
 struct Tally {
   std::int64_t pixels = 0;
   std::int64_t known = 0;
@@ -61,18 +104,20 @@ struct Tally {
 };
 
 /// Whether each superpixel is floor; empty without superpixels.
-std::vector<std::uint8_t> floor_pieces(const ObstacleCues& cues, View<const float> surface_disparity_px,
-                                       const kernels::Backdrop& backdrop, float margin, const Exec& exec) {
+std::vector<std::uint8_t> floor_pieces(const ObstacleCues& cues, const kernels::Backdrop& backdrop,
+                                       float margin, const Exec& exec) {
   if (cues.superpixels.empty()) return {};
-  const int width = surface_disparity_px.width();
+  const int width = cues.superpixels.width();
   BackgroundRow behind(backdrop, width, exec);
+  SeenRow seen(cues);
   std::vector<std::uint64_t> up_to(slot(width) + 1);
   std::vector<Tally> pieces;
   for_each_run(cues.superpixels, exec, [&](const Run& run) {
     if (run.first == 0) {
       behind.look_at(run.y);
-      kernels::obstacle_kernels(exec).sum_floor(surface_disparity_px.row(run.y), behind.free_floor_px(),
-                                                margin, width, up_to.data());
+      seen.look_at(run.y);
+      kernels::obstacle_kernels(exec).sum_floor(seen.surface_px(), behind.free_floor_px(), margin, width,
+                                                up_to.data());
     }
     const std::size_t i = index(run.label);
     if (i >= pieces.size()) pieces.resize(i + 1);
@@ -136,31 +181,27 @@ struct IslandStatistics {
 
 Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
                                      const GroundConfig& config, const Exec& exec) {
-  const View<const float> disparity_px = cues.disparity.disparity_px;
-  const View<const float> surface_disparity_px =
-      cues.surface_disparity_px.empty() ? disparity_px : cues.surface_disparity_px;
   const kernels::Backdrop backdrop = backdrop_of(cues, rig);
-  const std::vector<std::uint8_t> pieces =
-      floor_pieces(cues, surface_disparity_px, backdrop, config.margin, exec);
-  Image<ObstacleLabel> space(disparity_px.size(), exec.pool);
+  const std::vector<std::uint8_t> pieces = floor_pieces(cues, backdrop, config.margin, exec);
+  Image<ObstacleLabel> space(cues.disparity.disparity_px.size(), exec.pool);
   const int width = space.width();
   parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
     BackgroundRow behind(backdrop, width, exec);
     std::vector<std::uint8_t> in_floor(slot(width));
-    const std::vector<float> all_trusted(cues.confidence.empty() ? slot(width) : 0, 1.0F);
+    SeenRow seen(cues);
     for (int y = first; y < last; ++y) {
       behind.look_at(y);
-      const float* const seen = surface_disparity_px.row(y);
+      seen.look_at(y);
       if (pieces.empty()) {  // each known pixel is a piece; the kernel checks whether it is on the floor
-        std::transform(seen, seen + width, in_floor.begin(), [](float d) { return d == d ? 1 : 0; });
+        const float* const surface = seen.surface_px();
+        std::transform(surface, surface + width, in_floor.begin(), [](float d) { return d == d ? 1 : 0; });
       } else {
         const RegionId* const piece = cues.superpixels.row(y);
         std::transform(piece, piece + width, in_floor.begin(),
                        [is_floor = pieces.data()](RegionId i) { return is_floor[index(i)]; });
       }
       kernels::obstacle_kernels(exec).label(
-          {cues.objects.row(y), disparity_px.row(y), seen,
-           cues.confidence.empty() ? all_trusted.data() : cues.confidence.row(y), in_floor.data(),
+          {cues.objects.row(y), seen.disparity_px(), seen.surface_px(), seen.confidence(), in_floor.data(),
            behind.free_floor_px(), behind.barrier_px()},
           config.margin, width, space.row(y));
       for (int x = 0; x < width; ++x) {
@@ -170,6 +211,29 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
     }
   });
   return space;
+}
+
+Image<float> obstacle_disparities(View<const ObstacleLabel> space, View<const float> disparity_px,
+                                  View<const float> refined_px, View<const float> refined_confidence,
+                                  const Exec& exec) {
+  Image<float> all(disparity_px.size(), exec.pool);
+  for (int y = 0; y < all.height(); ++y) {
+    float* const d = all.row(y);
+    std::copy_n(disparity_px.row(y), all.width(), d);
+    if (refined_px.empty()) continue;
+    const ObstacleLabel* const label = space.row(y);
+    const float* const refined = refined_px.row(y);
+    const float* const likely = refined_confidence.row(y);
+    for (int x = 0; x < all.width(); ++x) {
+      if (likely[x] < kLikelyRefined) continue;
+      if (label[x] == ObstacleLabel::obstacle) {
+        d[x] = refined[x];
+      } else if (!(std::abs(d[x] - refined[x]) <= 1)) {
+        d[x] = kNan;
+      }
+    }
+  }
+  return all;
 }
 
 Image<std::uint8_t> floor_of(View<const ObstacleLabel> space, const Exec& exec) {
@@ -260,7 +324,8 @@ std::vector<RejectedObstacle> rejected_obstacles(View<const ObstacleLabel> space
                                                  const std::optional<StereoRig>& rig,
                                                  const RejectedObstacleLimits& limits, const Exec& exec) {
   constexpr double kMinShare = 0.0005;
-  const View<const float> d = cues.disparity.disparity_px;
+  const Image<float> d = obstacle_disparities(space, cues.disparity.disparity_px, cues.refined_px,
+                                              cues.refined_confidence, exec);
   const kernels::Backdrop backdrop = backdrop_of(cues, rig);
   BackgroundRow behind(backdrop, space.width(), exec);
   const auto rows = [&](int y) { return RestRow{space.row(y), cues.objects.row(y), d.row(y)}; };

@@ -39,18 +39,30 @@ struct ObstacleCues {
   const Background& background;
   View<const RegionId> superpixels;  // empty: each pixel is its own
   View<const ObjectId> objects;
+  View<const float> refined_px = {};  // refine_disparity(); empty: none
+  View<const float> refined_confidence = {};
 };
+/// label_obstacles() prefers refined disparities that are at least as likely, 0 … 1.
+inline constexpr float kLikelyRefined = 0.8F;
 
-/// Classifies each pixel. obstacle: part of an object, or above the floor (without a floor: in front of the
-/// walls; without either: nearer than infinity) by more than config.margin, with a disparity more likely right
-/// than wrong. floor: outside of objects, in a superpixel with at least a fifth of its pixels known and three
-/// fifths of these on the floor, except for pixels that are off the floor themselves. Holes in such a
-/// superpixel are floor too. sky: rejected as such. Everything else is unknown.
+/// Classifies each pixel by its refined disparity if that is likely, else by the matched one. obstacle: part
+/// of an object, or above the floor (without a floor: in front of the walls; without either: nearer than
+/// infinity) by more than config.margin, with a disparity more likely right than wrong. floor: outside of
+/// objects, in a superpixel with at least a fifth of its pixels known and three fifths of these on the floor,
+/// except for pixels that are off the floor themselves. Holes in such a superpixel are floor too. sky:
+/// rejected as such. Everything else is unknown.
 Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
                                      const GroundConfig& config, const Exec& exec);
 
 /// 255 for floor, else 0.
 Image<std::uint8_t> floor_of(View<const ObstacleLabel> space, const Exec& exec);
+
+/// The disparities for scan_obstacles() and map_obstacles(). Of an obstacle the one that it was labelled by, so
+/// holes that were filled have a position, too. Of floor that of the match, but NaN where a likely refined one is more
+/// than 1 px off: what was corrected does not show that the place is free. Empty refined views: a copy.
+Image<float> obstacle_disparities(View<const ObstacleLabel> space, View<const float> disparity_px,
+                                  View<const float> refined_px, View<const float> refined_confidence,
+                                  const Exec& exec);
 
 /// The nearest obstacle in each direction, as from a laser scanner (ROS sensor_msgs/LaserScan), seen from the
 /// floor below the camera.
@@ -61,9 +73,10 @@ struct ObstacleScan {
   std::vector<float> ranges_m;    // NaN: no obstacle seen, but not necessarily free
 };
 
-/// `space` as returned by label_obstacles(); obstacles without disparity have no position and are left out. A
-/// range is that of the fourth nearest pixel in its direction, so that single false matches do not count.
-/// Spans the image width on the floor; all around if the camera sees what is next to it.
+/// `space` as returned by label_obstacles(), `disparity_px` by obstacle_disparities(); obstacles without
+/// disparity have no position and are left out. A range is that of the fourth nearest pixel in its direction,
+/// so that single false matches do not count. Spans the image width on the floor; all around if the camera
+/// sees what is next to it.
 ObstacleScan scan_obstacles(View<const ObstacleLabel> space, View<const float> disparity_px,
                             const FloorFrame& floor, const StereoRig& rig, const ObstaclesConfig& config);
 

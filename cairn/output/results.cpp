@@ -109,8 +109,9 @@ Json json(const RejectedObstacle& left) {
 Json scan_json(const Frame& frame, const Provenance& provenance) {
   const auto floor = floor_frame(frame.ground, provenance.rig);
   if (!floor) return nullptr;
-  const ObstacleScan scan = scan_obstacles(frame.space, frame.disparity.disparity_px, *floor, *provenance.rig,
-                                           provenance.config.obstacles);
+  const Image<float> disparity_px = obstacle_disparities(frame);
+  const ObstacleScan scan =
+      scan_obstacles(frame.space, disparity_px, *floor, *provenance.rig, provenance.config.obstacles);
   Json ranges = Json::array();
   for (const float range : scan.ranges_m) ranges.push_back(json(range));
   return {{"angle_min_rad", json(scan.angle_min_rad)},
@@ -315,9 +316,9 @@ bool wants_grid(const Result& r) {
 }
 
 ObstacleGrid grid_of(const Result& r) {
-  return map_obstacles(r.frame.space, r.frame.disparity.disparity_px,
-                       *floor_frame(r.frame.ground, r.provenance.rig), *r.provenance.rig,
-                       r.provenance.config.obstacles);
+  const Image<float> disparity_px = obstacle_disparities(r.frame);
+  return map_obstacles(r.frame.space, disparity_px, *floor_frame(r.frame.ground, r.provenance.rig),
+                       *r.provenance.rig, r.provenance.config.obstacles);
 }
 
 /// In the format of ROS map_server: the row with the greatest y first.

@@ -82,6 +82,12 @@ Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Ru
   const ChosenObjects chosen =
       stage("choose_objects",
             choose ? choose(found, limits) : choose_objects(tree, object_classifier(), limits, exec));
+  RefinedDisparity refined;  // fitted to errors of matching, so not for given disparities
+  if (!match.stereo.confidence.empty()) {
+    const Cues cues = found.cues(in.left);
+    const RefinementCues all{superpixels, tree, chosen, cues, match.stereo.confidence};
+    refined = stage("refine_disparity", refine_disparity(all, plane_classifier(), exec));
+  }
   Frame frame{std::move(found.match.stereo)};
   frame.superpixels = stage("superpixels", superpixel_regions(superpixels, in.left.gray, exec));
   frame.groups = stage("groups", object_regions(superpixels, chosen, frame.disparity, exec));
@@ -97,8 +103,16 @@ Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Ru
                        frame.objects.labels};
   frame.disparity = stage("reject_sky", reject_sky(std::move(frame.disparity), of_sky, rig, exec));
   frame.confidence = without_holes(std::move(frame.confidence), frame.disparity.reject);
-  const ObstacleCues seen{frame.disparity, surface_disparity_px, frame.confidence,    frame.ground,
-                          background,      superpixels.labels,   frame.objects.labels};
+  if (!refined.disparity_px.empty()) frame.refined = without_sky(std::move(refined), frame.disparity.reject);
+  const ObstacleCues seen{frame.disparity,
+                          surface_disparity_px,
+                          frame.confidence,
+                          frame.ground,
+                          background,
+                          superpixels.labels,
+                          frame.objects.labels,
+                          frame.refined.disparity_px,
+                          frame.refined.confidence};
   frame.space = stage("label_obstacles", label_obstacles(seen, rig, config.ground, exec));
   const float wall_px = wall_tolerance_px(config.background, in.left.gray.size());
   frame.left_out = stage("rejected_obstacles", rejected_obstacles(frame.space, seen, chosen.likeliest, rig,

@@ -8,6 +8,11 @@
 
 namespace cairn {
 
+Image<float> obstacle_disparities(const Frame& frame) {
+  return obstacle_disparities(frame.space, frame.disparity.disparity_px, frame.refined.disparity_px,
+                              frame.refined.confidence, {});
+}
+
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {
   // Rounded up, so that an area of exactly min_area per cent suffices.
   const double least = std::ceil(static_cast<double>(image.area()) * double{config.min_area} / 100);

@@ -6,6 +6,7 @@
 #include <cairn/objects/obstacles.hpp>
 #include <cairn/pipeline/input.hpp>
 #include <cairn/regions/choose_objects.hpp>
+#include <cairn/regions/refine_disparity.hpp>
 
 namespace cairn {
 
@@ -29,11 +30,16 @@ struct Frame : StereoResult {
   // (region 0 = the rest) with their disparities.
   Segmentation superpixels{};
   Segmentation groups{};
+  RefinedDisparity
+      refined{};  // the most likely disparity of each pixel, without the sky; empty without a pair
   Objects objects{};
   // Obstacles for a robot, whether objects or not.
   Image<ObstacleLabel> space{};              // obstacle, floor, sky or unknown
   std::vector<RejectedObstacle> left_out{};  // obstacles that are not objects, nearest first, and why
 };
+
+/// obstacle_disparities() of a frame.
+Image<float> obstacle_disparities(const Frame& frame);
 
 /// The limits of an object in an image of this size, for choose_objects().
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image);

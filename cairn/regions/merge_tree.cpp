@@ -30,6 +30,7 @@ class TreeGrower {
         judged_(graph_.contacts.size()) {
     std::iota(first_.begin(), first_.end(), 0);
     tree_.superpixels = superpixels.count;
+    tree_.superpixel_cues = graph_;
     tree_.nodes.reserve(2 * graph_.regions.size());
     tree_.nodes.resize(graph_.regions.size());
     for (std::size_t i = 0; i < graph_.contacts.size(); ++i) {

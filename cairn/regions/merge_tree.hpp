@@ -24,6 +24,7 @@ struct MergeNode {
 struct MergeTree {
   int superpixels = 0;
   std::vector<MergeNode> nodes;
+  RegionGraphCues superpixel_cues{};  // gather_cues(): of the superpixels and of their contacts
 };
 
 /// Called for each pair of nodes evaluated, with its features: for fitting.

@@ -392,7 +392,8 @@ std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,
                                      const std::optional<StereoRig>& rig, const ObstaclesConfig& config) {
   const auto floor = floor_frame(frame.ground, rig);
   if (!floor || frame.space.empty()) return std::nullopt;
-  ObstacleGrid grid = map_obstacles(frame.space, frame.disparity.disparity_px, *floor, *rig, config);
+  const cairn::Image<float> disparity_px = obstacle_disparities(frame);
+  ObstacleGrid grid = map_obstacles(frame.space, disparity_px, *floor, *rig, config);
   OccupancyGrid message;
   message.header = header;
   message.info.map_load_time = header.stamp;

@@ -24,6 +24,7 @@ enum class Reject : std::uint16_t {
   speckle = 64,
   no_data = 128,
   sky = 256,
+  unlikely = 512,
 };
 
 /// Name, text and colour of a reason.
@@ -49,6 +50,7 @@ inline constexpr std::array kReasons{
     Reason{Reject::flat, "flat", "flat", {125, 150, 140}, "all disparities fit about equally well"},
     Reason{Reject::left_right, "left_right", "left-right", {205, 205, 205},
            "the match in the right image does not lead back"},
+    Reason{Reject::unlikely, "unlikely", "unlikely", {190, 165, 140}, "no disparity is likely there (refined disparities only)"},
 };
 // clang-format on
 

@@ -104,7 +104,8 @@ thread_local std::vector<output::StageTime>* PySegmenter::times_ = nullptr;
 /// A scan or grid of what is seen from the floor.
 template <auto make>
 auto from_floor(const Frame& frame, const FloorFrame& floor, const output::Provenance& how) {
-  return make(frame.space, frame.disparity.disparity_px, floor, *how.rig, how.config.obstacles);
+  const Image<float> disparity_px = obstacle_disparities(frame);
+  return make(frame.space, disparity_px, floor, *how.rig, how.config.obstacles);
 }
 
 Numbers<float> numbers_of(const std::vector<Vec3>& points, std::vector<py::ssize_t> shape) {

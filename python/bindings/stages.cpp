@@ -132,6 +132,9 @@ DisparityMap cloned(const DisparityMap& map, const Pool& pool) {
 Objects cloned(const Objects& objects, const Pool& pool) {
   return {objects.labels.clone(pool), objects.list};
 }
+RefinedDisparity cloned(const RefinedDisparity& refined, const Pool& pool) {
+  return {refined.disparity_px.clone(pool), refined.confidence.clone(pool)};
+}
 template <class P, class V>
 decltype(auto) argument(V&& value, const Exec& exec) {
   if constexpr (std::is_reference_v<P> || std::is_copy_constructible_v<P>) {
@@ -204,6 +207,34 @@ MergeTree merge_tree(const Superpixels& superpixels, const LeftImage& left, cons
   const Image<ObjectHint> found = hint_objects(superpixels.edges, cues, exec);
   cues.hints = found;
   return grow_merge_tree(superpixels, cues, merge_classifier(), exec);
+}
+
+RefinedDisparity refined(const Superpixels& superpixels, const MergeTree& tree, const ChosenObjects& chosen,
+                         const LeftImage& left, const DisparityMap& disparity, View<const float> textured_px,
+                         const Ground& ground, const Background& background, View<const float> confidence,
+                         View<const ObjectHint> hints, const Exec& exec) {
+  std::vector<std::int64_t> areas(slot(superpixels.count));
+  for (int y = 0; y < superpixels.labels.height(); ++y) {
+    for (int x = 0; x < superpixels.labels.width(); ++x) ++areas[index(superpixels.labels(x, y))];
+  }
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const RegionCues& region = tree.superpixel_cues.regions[i];
+    if (region.area != areas[i] || region.right >= superpixels.labels.width() ||
+        region.bottom >= superpixels.labels.height())
+      throw Error("tree: was grown from other superpixels");
+  }
+  const Cues cues{left, disparity.disparity_px, textured_px, ground, background, hints};
+  return refine_disparity({superpixels, tree, chosen, cues, confidence}, plane_classifier(), exec);
+}
+
+Image<ObstacleLabel> labelled(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
+                              const RefinedDisparity* refined, const GroundConfig& config, const Exec& exec) {
+  ObstacleCues all = cues;
+  if (refined != nullptr) {
+    all.refined_px = refined->disparity_px;
+    all.refined_confidence = refined->confidence;
+  }
+  return label_obstacles(all, rig, config, exec);
 }
 
 DisparityMap combined(View<const float> refined_px, const std::vector<View<const Reject>>& verdicts,
@@ -310,6 +341,9 @@ void bind_region_tree(py::module_& m) {
         return choose_objects(tree, object_classifier(), limits_of(config, size_of(tree)), exec);
       });
   stage(m, "object_regions", &object_regions);
+  stage(m, "refine_disparity", &refined);
+  stage(m, "without_sky", &without_sky);
+  stage(m, "likely_disparities", &likely_disparities);
 }
 
 void bind_objects(py::module_& m) {
@@ -327,7 +361,7 @@ void bind_objects(py::module_& m) {
       });
   stage(m, "locate", &locate);
   stage(m, "reject_sky", &reject_sky);
-  stage(m, "label_obstacles", &label_obstacles);
+  stage(m, "label_obstacles", &labelled);
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ void bind_regions(py::module_& m) {
     return all;
   });
   value_class<ChosenObjects>(m, "ChosenObjects");
+  value_class<RefinedDisparity>(m, "RefinedDisparity");
   value_class<Fusion>(m, "Fusion");
 }
 

@@ -32,8 +32,18 @@ CAIRN_MEMBERS(RegionGraph, _nodes, _first_arc, _arcs)
 CAIRN_MEMBERS(Superpixels, labels, count, _edges)
 CAIRN_MEMBERS(Origin, _same_thing, _least_same_thing, _larger_part)
 CAIRN_MEMBERS(MergeNode, _part_a, _part_b, _whole, _area, _origin, _features)
-CAIRN_MEMBERS(MergeTree, superpixels, _nodes)
+CAIRN_MEMBERS(PlaneMoments, _n, _x, _y, _xx, _xy, _yy, _d, _xd, _yd, _dd)
+CAIRN_MEMBERS(Heights, _n, _sum, _squares, _behind, _on)
+CAIRN_MEMBERS(HintSums, _object, _outline, _weight, _x, _y, _xx, _yy, _size)
+CAIRN_MEMBERS(RegionCues, _area, _x, _y, _xx, _xy, _yy, _left, _top, _right, _bottom, _at_image_border,
+              _colour, _colour_squares, _histogram, _texture, _perimeter, _matched, _textured, _above_ground,
+              _textured_above_ground, _before_background, _textured_before_background, _hints)
+CAIRN_MEMBERS(ContactCues, _a, _b, _length, _edge_sum, _weak, _x2, _y2, _outline, _near_n, _near_sum,
+              _near_abs, _far_n, _far_sum, _far_abs, _nearer, _farther, _level)
+CAIRN_MEMBERS(RegionGraphCues, _regions, _contacts)
+CAIRN_MEMBERS(MergeTree, superpixels, _nodes, _superpixel_cues)
 CAIRN_MEMBERS(ChosenObjects, object_of, scores, likeliest)
+CAIRN_MEMBERS(RefinedDisparity, disparity_px, confidence)
 CAIRN_MEMBERS(Fusion, labels, parts, disparity_region, is_floor)
 CAIRN_MEMBERS(FloorBox, centre_in_floor_m, size_m, yaw_rad, _centre_covariance)
 CAIRN_MEMBERS(Object, id, box_px, pixel_count, disparity_px, valid_share, mean_colour, edge_share, cut_share,
@@ -49,12 +59,12 @@ template <>
 struct Members<Frame> {
   static constexpr std::string_view kNames =
       "disparity_map, ground, floor, epipolar, confidence, by_intensity, by_disparity, fusion, superpixels, "
-      "groups, objects, space, left_out";
+      "groups, refined, objects, space, left_out";
   template <class Value>
   static auto of(Value& value) {
     return std::tie(value.disparity, value.ground, value.floor, value.epipolar, value.confidence,
                     value.by_intensity, value.by_disparity, value.fusion, value.superpixels, value.groups,
-                    value.objects, value.space, value.left_out);
+                    value.refined, value.objects, value.space, value.left_out);
   }
 };
 

@@ -195,7 +195,7 @@ def converted(value, name, kind, exec, bgr):
 
 CLASSES = {}  # of the package, by name
 PLAIN = {"int": int, "float": float, "bool": bool}
-LIMITS = {"noise_sigma": (np.inf, "0 or more grey levels"), "smoothing_sigma": (5, "0 … 5 px")}
+LIMITS = {"noise_sigma": (np.inf, "0 or more grey levels"), "smoothing_sigma": (5, "0 … 5 px"), "min_confidence": (1, "0 … 1")}
 
 
 def size_of(parameter, value):

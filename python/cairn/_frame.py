@@ -55,6 +55,10 @@ class Frame:
     groups: Optional[Segmentation] = doc(
         "Segmentation: region 0 is the background, the others are the chosen objects; None with pipeline.method=paper",
         made_by("groups"))
+    refined: Optional[RefinedDisparity] = doc(
+        "the most likely disparity of each pixel, with its confidence: gross errors corrected and holes filled, a "
+        "RefinedDisparity; None with pipeline.method=paper",
+        lambda self: None if self._data.refined.disparity_px is None else self._data.refined)
     epipolar: EpipolarOffset = doc("row offset of the right image, an EpipolarOffset")
     rig: Optional[Rig] = doc("Rig used, or None", lambda self: self._how.rig)
     config: Config = doc("Config used", lambda self: self._how.config)

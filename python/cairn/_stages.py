@@ -229,8 +229,25 @@ def choose_objects(tree: MergeTree) -> ChosenObjects:
 def object_regions(superpixels: Superpixels, chosen: ChosenObjects, disparity: DisparityLike) -> Segmentation:
     """The chosen objects as a Segmentation: region 0 is the rest (is_background), the others are the objects. Means in
     px."""
-    if len(chosen.object_of) != superpixels.count:
-        raise Error(f"chosen: is of {len(chosen.object_of)} superpixels, expected the {superpixels.count} of superpixels")
+    check_superpixels(superpixels, chosen=len(chosen.object_of))
+
+
+def refine_disparity(superpixels: Superpixels, tree: MergeTree, chosen: ChosenObjects, left: ImageLike,
+                     disparity: DisparityLike, textured_px: DisparitiesLike, ground: Ground, background: Background,
+                     confidence: DisparitiesLike, hints: HintsLike, noise_sigma: float) -> RefinedDisparity:
+    """The most likely disparity of each pixel: groups of pixels of a superpixel keep their disparities or take a plane,
+    chosen by fitted trees. disparity, textured_px, ground, background, hints: as for the tree. confidence: from
+    estimate_confidence(). noise_sigma: from noise_sigma()."""
+    check_superpixels(superpixels, tree=tree.superpixels, chosen=len(chosen.object_of))
+
+
+def without_sky(refined: RefinedDisparity, reject: NDArray[numpy.uint16]) -> RefinedDisparity:
+    """The same with NaN where `reject` says sky."""
+
+
+def likely_disparities(refined: RefinedDisparity, reject: NDArray[numpy.uint16], min_confidence: float) -> DisparityMap:
+    """The refined disparities with at least this confidence, 0 to 1. Others are holes, with the reasons of `reject` and
+    Reject.unlikely."""
 
 
 # ---- objects ----
@@ -274,7 +291,7 @@ def reject_sky(disparity: DisparityLike, left: ImageLike, confidence: Disparitie
 
 def label_obstacles(objects: Objects, disparity: DisparityLike, confidence: DisparitiesLike, ground: Ground,
                 background: Background, superpixels: Superpixels, surface_disparity_px: DisparitiesLike,
-                rig: RigLike = None) -> NDArray[numpy.uint8]:
+                rig: RigLike = None, refined: Optional[RefinedDisparity] = None) -> NDArray[numpy.uint8]:
     """The class of each pixel: (H, W) uint8, 255 = obstacle, 128 = floor, 64 = sky, 0 = unknown. surface_disparity_px: from
     floor_under_reflections()."""
 
@@ -309,6 +326,12 @@ def count_of(labels):
     if not areas.all():
         raise Error(f"labels: found no pixel of region {areas.argmin()}, expected every one of 0 … {len(areas) - 1}")
     return len(areas)
+
+
+def check_superpixels(superpixels, **counts):
+    for name, count in counts.items():
+        if count != superpixels.count:
+            raise Error(f"{name}: is of {count} superpixels, expected the {superpixels.count} of superpixels")
 
 
 def check_labels(name, labels, counted, entries):

@@ -284,6 +284,13 @@ class ChosenObjects:
         return len(self.scores) - 1
 
 
+class RefinedDisparity:
+    """The most likely disparity of each pixel. Arrays (H, W), read-only."""
+
+    disparity_px: NDArray[numpy.float32] = doc("float32, px; NaN = neither a disparity nor a plane is known")
+    confidence: NDArray[numpy.float32] = doc("float32, 0 to 1: probability that it is within 1 px of the truth")
+
+
 # ---- objects ----
 
 

@@ -15,7 +15,7 @@ from conftest import same
 CHECKS = " ".join(name for name, *_ in _cairn.CHECKS)
 STAGES = f"""correct_epipolar match refine_subpixel {CHECKS} combine
     noise_sigma select_textured fit_ground likely_ground reject_below_ground reject_speckles fit_background
-    floor_under_reflections superpixel_edges hint_objects cut_superpixels grow_merge_tree estimate_confidence choose_objects superpixels groups
+    floor_under_reflections superpixel_edges hint_objects cut_superpixels grow_merge_tree estimate_confidence choose_objects refine_disparity superpixels groups
     measure refine_objects locate reject_sky label_obstacles rejected_obstacles""".split()
 PAPER_STAGES = f"""match refine_subpixel {CHECKS} combine noise_sigma
     fit_ground reject_below_ground reject_speckles label_floor segment_disparity segment_intensity fuse measure

@@ -112,6 +112,7 @@ def one_of_each(sample):
         sample.frame.scan(),
         sample.frame.grid(),
         sample.frame.left_out[0],
+        sample.frame.refined,
         sample.frame.objects[0].box_on_floor,
         cairn.Exec(2, "scalar"),
         cairn.Segmenter(sample.calibration, preset="paper"),

@@ -72,9 +72,19 @@ def by_hierarchy(sample):
     objects = cairn.refine_objects(objects, disparity, sample.left, sample.right)
     objects = cairn.locate(objects, disparity, ground, rig)
     confidence = cairn.estimate_confidence(matches, disparity)
+    refined = cairn.refine_disparity(superpixels, tree, chosen, sample.left, seen, evidence, ground, background, confidence,
+                                     hints, noise)
     disparity = cairn.reject_sky(disparity, sample.left, confidence, ground, superpixels, objects, rig)
     confidence = np.where(disparity.reject == 0, confidence, np.float32(0))
-    space = cairn.label_obstacles(objects, disparity, confidence, ground, background, superpixels, seen, rig)
+    space = cairn.label_obstacles(objects, disparity, confidence, ground, background, superpixels, seen, rig,
+                                  cairn.without_sky(refined, disparity.reject))
+    assert same(refined.confidence, sample.frame.refined.confidence)
+    likely = cairn.likely_disparities(refined, disparity.reject, 0.5)
+    assert same(np.isnan(likely.disparity_px), likely.reject != 0)
+    assert same(likely.reject & cairn.Reject.unlikely != 0, refined.confidence < 0.5)
+    with pytest.raises(cairn.Error, match="tree: was grown from other superpixels"):
+        cairn.refine_disparity(cairn.cut_superpixels(sample.left, seen, noise), tree, chosen, sample.left, seen, evidence,
+                               ground, background, confidence, hints, noise)
     assert same(space, sample.frame.space)
     regions = {"superpixels": cairn.superpixel_regions(superpixels, sample.left), "groups": groups}
     return disparity, confidence, regions, objects

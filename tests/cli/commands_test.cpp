@@ -318,6 +318,36 @@ TEST_F(Command, DisparityWritesTheFormatOfTheExtension) {
   EXPECT_GT(valid, 96 * 72 / 2);
 }
 
+TEST_F(Command, DisparityFillsHolesIfRefined) {
+  const std::string sample = std::string(CAIRN_SOURCE_DIR) + "/data/samples/dim_light";
+  ASSERT_EQ(run({"disparity", sample, "-o", path("d.png")}).code, 0);
+  const Outcome some = run({"disparity", sample, "--refined", "-o", path("r.png"), "--confidence",
+                            path("c.png"), "--view", path("v.png")});
+  ASSERT_EQ(some.code, 0) << some.err;
+  EXPECT_NE(some.out.find("\nunlikely "), std::string::npos) << some.out;
+  ASSERT_EQ(run({"disparity", sample, "--refined", "--min-confidence", "0", "-o", path("all.pfm")}).code, 0);
+  const auto holes = [&](const char* name) {
+    const Image<float> map = io::load_disparity(at(name));
+    int count = 0;
+    for (int y = 0; y < map.height(); ++y)
+      count += static_cast<int>(
+          std::count_if(map.row(y), map.row(y) + map.width(), [](float d) { return std::isnan(d); }));
+    return count;
+  };
+  EXPECT_LT(holes("r.png"), holes("d.png") / 2);
+  EXPECT_EQ(holes("all.pfm"), 0);
+  const Image<float> refined = io::load_disparity(at("r.png"));
+  const io::Labels confidence = io::load_labels(at("c.png"));
+  for (int y = 0; y < refined.height(); ++y) {
+    for (int x = 0; x < refined.width(); ++x) ASSERT_EQ(std::isnan(refined(x, y)), confidence.ids(x, y) == 0);
+  }
+  refuses({"disparity", sample, "--refined", "--preset", "paper"},
+          {"--refined", "pipeline.method", "region_tree"});
+  refuses({"disparity", sample, "--refined", "--min-confidence", "nan"}, {"--min-confidence", "0 … 1"});
+  refuses({"disparity", sample, "--refined", "--min-confidence", "1.5"}, {"--min-confidence", "1.5"});
+  refuses({"disparity", sample, "--min-confidence", "0.5"}, {"--refined"});
+}
+
 TEST_F(Command, TablesListTheReasonsInForceAndMissingTexture) {
   const auto pair = pair_in("pair");
   for (const char* side : {"pair/left.png", "pair/right.png"}) {  // a plain wall next to the dots

@@ -22,7 +22,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
 REASONS = {1: "border", 2: "left-right", 4: "not unique", 8: "flat", 16: "no texture", 32: "below ground", 64: "speckle",
-           128: "no data", 256: "sky"}
+           128: "no data", 256: "sky", 512: "unlikely"}
 
 
 class Page(PageTest):

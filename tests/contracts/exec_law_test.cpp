@@ -97,6 +97,9 @@ void expect_same(const Frame& a, const Frame& b) {
   EXPECT_EQ(differing(a.disparity.disparity_px, b.disparity.disparity_px), 0);
   EXPECT_EQ(differing(a.disparity.reject, b.disparity.reject), 0);
   EXPECT_EQ(differing(a.confidence, b.confidence), 0);
+  EXPECT_EQ(differing(a.refined.disparity_px, b.refined.disparity_px), 0);
+  EXPECT_EQ(differing(a.refined.confidence, b.refined.confidence), 0);
+  EXPECT_EQ(differing(a.space, b.space), 0);
   expect_same_ground(a.ground, b.ground);
   EXPECT_EQ(differing(a.floor, b.floor), 0);
   expect_same_regions(a.by_intensity, b.by_intensity);

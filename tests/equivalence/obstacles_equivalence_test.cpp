@@ -10,6 +10,7 @@
 
 #include "support/grids.hpp"
 #include "support/noise.hpp"
+#include "support/random_input.hpp"
 
 namespace cairn {
 namespace {
@@ -94,6 +95,22 @@ TEST(SpaceEquivalence, HoldsForAnyKnownInputs) {
         }
       }
     }
+  }
+}
+
+TEST(SpaceEquivalence, HoldsForRefinedDisparities) {
+  const Scene scene({67, 45}, 5);
+  const Image<float> likely = random_input::random_floats({67, 45}, 10, 0.1F, 1);
+  const Image<float> refined = random_input::random_floats({67, 45}, 40, 0.5F, 2);
+  const Ground ground{kFloor, 1, 0, Refusal::none};
+  const Background background{{kFloor, kLeftWall}, true};
+  const Image<float> no_confidence;
+  for (const Image<float>* const confidence : {&scene.confidence, &no_confidence}) {
+    expect_equal_to_reference({scene.disparity, scene.seen, *confidence, ground, background,
+                               scene.superpixels, scene.objects, refined, likely},
+                              kRig);
+    expect_equal_to_reference(
+        {scene.disparity, {}, *confidence, ground, background, {}, scene.objects, refined, likely}, kRig);
   }
 }
 

@@ -47,16 +47,28 @@ struct Piece {
 
 Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
                                      const GroundConfig& config) {
-  const View<const float> disparity_px = cues.disparity.disparity_px;
-  const View<const float> surface_disparity_px =
-      cues.surface_disparity_px.empty() ? disparity_px : cues.surface_disparity_px;
+  const Size size = cues.disparity.disparity_px.size();
+  const auto is_refined = [&](int x, int y) {
+    return !cues.refined_px.empty() && cues.refined_confidence(x, y) >= kLikelyRefined;
+  };
+  const auto disparity_px = [&](int x, int y) {
+    return is_refined(x, y) ? cues.refined_px(x, y) : cues.disparity.disparity_px(x, y);
+  };
+  const auto surface_disparity_px = [&](int x, int y) {
+    return cues.surface_disparity_px.empty() || is_refined(x, y) ? disparity_px(x, y)
+                                                                 : cues.surface_disparity_px(x, y);
+  };
+  const auto confidence = [&](int x, int y) {
+    if (is_refined(x, y)) return cues.refined_confidence(x, y);
+    return cues.confidence.empty() ? 1.0F : cues.confidence(x, y);
+  };
   const auto is_on_floor = [&](int x, int y) {
     const auto floor = behind(cues, rig, x, y).free_floor;
     return floor && std::abs(surface_disparity_px(x, y) - *floor) <= config.margin;
   };
   std::map<RegionId, Piece> pieces;
-  for (int y = 0; y < surface_disparity_px.height() && !cues.superpixels.empty(); ++y) {
-    for (int x = 0; x < surface_disparity_px.width(); ++x) {
+  for (int y = 0; y < size.height && !cues.superpixels.empty(); ++y) {
+    for (int x = 0; x < size.width; ++x) {
       Piece& piece = pieces[cues.superpixels(x, y)];
       ++piece.pixels;
       piece.known += std::isnan(surface_disparity_px(x, y)) ? 0 : 1;
@@ -69,10 +81,9 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
     return std::isnan(surface_disparity_px(x, y)) || is_on_floor(x, y);
   };
   const auto is_obstacle = [&](int x, int y) {
-    return disparity_px(x, y) - behind(cues, rig, x, y).barrier > config.margin &&
-           (cues.confidence.empty() || cues.confidence(x, y) >= 0.5F);
+    return disparity_px(x, y) - behind(cues, rig, x, y).barrier > config.margin && confidence(x, y) >= 0.5F;
   };
-  Image<ObstacleLabel> space(disparity_px.size());
+  Image<ObstacleLabel> space(size);
   for (int y = 0; y < space.height(); ++y) {
     for (int x = 0; x < space.width(); ++x) {
       ObstacleLabel& is = space(x, y);

@@ -315,5 +315,28 @@ TEST(LeftOutOf, AnObjectSplitsAnObstacleOfItsDisparity) {
   }
 }
 
+/// A pixel each: labelled by its refined disparity; by the match, as that is unlikely; floor with a contradicting match,
+/// with an agreeing one, and without one.
+TEST(ObstacleDisparities, AreThoseThatDecided) {
+  const auto filled = [](std::initializer_list<float> values) {
+    Image<float> image({static_cast<int>(values.size()), 1});
+    std::copy(values.begin(), values.end(), image.row(0));
+    return image;
+  };
+  constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+  Image<ObstacleLabel> space({5, 1}, ObstacleLabel::floor, {});
+  space(0, 0) = space(1, 0) = ObstacleLabel::obstacle;
+  const Image<float> matched = filled({kHole, 9, 9, 5.5F, kHole});
+  const Image<float> refined = filled({12, 4, 5, 5, 5});
+  const Image<float> likely = filled({0.9F, 0.5F, 0.9F, 0.9F, 0.9F});
+  const Image<float> d = obstacle_disparities(space, matched, refined, likely, {});
+  EXPECT_EQ(d(0, 0), 12);
+  EXPECT_EQ(d(1, 0), 9);
+  EXPECT_TRUE(std::isnan(d(2, 0)));
+  EXPECT_EQ(d(3, 0), 5.5F);
+  EXPECT_TRUE(std::isnan(d(4, 0)));
+  EXPECT_EQ(obstacle_disparities(space, matched, {}, {}, {})(2, 0), 9);
+}
+
 }  // namespace
 }  // namespace cairn
