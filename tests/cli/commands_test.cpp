@@ -335,7 +335,7 @@ TEST_F(Command, DisparityFillsHolesIfRefined) {
     return count;
   };
   EXPECT_LT(holes("r.png"), holes("d.png") / 2);
-  EXPECT_EQ(holes("all.pfm"), 0);
+  EXPECT_LT(holes("all.pfm"), 320 * 240 / 500) << "only groups too small to be judged";
   const Image<float> refined = io::load_disparity(at("r.png"));
   const io::Labels confidence = io::load_labels(at("c.png"));
   for (int y = 0; y < refined.height(); ++y) {
