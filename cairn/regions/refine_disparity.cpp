@@ -23,8 +23,7 @@ constexpr double kOnPlane = 1;                        // px; as near as the trut
 constexpr double kSameMiddle = 0.5, kSameCorner = 1;  // px; planes that do not differ by more are one
 constexpr double kBeyondRange = 3;                    // px; planes farther beyond all disparities are refused
 constexpr double kLevelling = 4e-4;                   // damping of slopes: a spread in image widths²
-constexpr float kFewPixels =
-    -2;  // log-odds of groups that are too small to be judged, outside of the main plane
+constexpr float kFewPixels = -2;     // log-odds of groups too small to be judged, off the main plane
 constexpr float kPreferred = 0.05F;  // of keeping the disparities
 // The log-odds for kept pixels: of the choice, and of the match. Fitted by lab/refined.py.
 constexpr float kKeptBias = -0.32F, kKeptChoice = 0.87F, kKeptMatch = 0.27F;
@@ -252,6 +251,7 @@ class Refiner {
     std::vector<std::size_t> ends;  // of each group's choices
     std::vector<Chosen> chosen;     // of each group
     // Of one superpixel:
+    Pixels pixels;
     std::array<Pixels, kGroups> groups;
     std::vector<Candidate> candidates;
   };
@@ -485,15 +485,16 @@ class Refiner {
 
   /// Appends the choices of each group.
   void judge(std::size_t i, Work& work) {
-    Pixels all;
-    collect(i, all);
+    collect(i, work.pixels);
     for (Pixels& group : work.groups) group.clear();
-    for (const SuperpixelPixel& p : all) work.groups[group_of(own_[i], p)].push_back(p);
-    const auto pixels = static_cast<double>(all.size());
+    for (const SuperpixelPixel& p : work.pixels) work.groups[group_of(own_[i], p)].push_back(p);
+    const auto pixels = static_cast<double>(work.pixels.size());
     const double known = pixels - static_cast<double>(work.groups[holes].size());
     const Judging judging{i, pixels, known, list_candidates(i, work.candidates)};
-    for (Candidate& candidate : work.candidates) count_pixels_on(work.groups, known, candidate);
-    for (Candidate& candidate : work.candidates) compare_with_neighbours(i, candidate);
+    for (Candidate& candidate : work.candidates) {
+      count_pixels_on(work.groups, known, candidate);
+      compare_with_neighbours(i, candidate);
+    }
     for (std::size_t g = 0; g < kGroups; ++g) judge_group(judging, static_cast<Group>(g), work);
   }
 

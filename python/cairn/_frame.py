@@ -57,7 +57,7 @@ class Frame:
         made_by("groups"))
     refined: Optional[RefinedDisparity] = doc(
         "the most likely disparity of each pixel, with its confidence: gross errors corrected and holes filled, a "
-        "RefinedDisparity; None with pipeline.method=paper",
+        "RefinedDisparity; None with pipeline.method=paper and with given disparities",
         lambda self: None if self._data.refined.disparity_px is None else self._data.refined)
     epipolar: EpipolarOffset = doc("row offset of the right image, an EpipolarOffset")
     rig: Optional[Rig] = doc("Rig used, or None", lambda self: self._how.rig)
