@@ -6,6 +6,8 @@
 fit_hints.py gather TOOL STORE FRAMES...: the inputs of the network and the truth for folders of frames, in colour and
 in grey, into the folder STORE.
 fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--width W] [--worlds N] [--start FILE]: fits to such stores.
+fit_hints.py mean STORE... --start FILE --of FILE [--share S] [--work FOLDER] [--out FOLDER]: the mean of the weights of a network
+and of one that went on from it (Wortsman et al. 2022, "Robust fine-tuning"); STORE...: those of that fit.
 
 For each cell of 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
 and the centre and size of its object. It is then quantised: weights to 8 bits per output channel, activations to
@@ -414,7 +416,7 @@ def fitted(frames, steps, width, checkpoint, start=None):
     mean.load_state_dict(net.state_dict())
     kept, new = ([v for v in one.state_dict().values() if v.dtype.is_floating_point] for one in (mean, net))
     sampler = Sampler(frames)
-    rate = RATE / 2 if start else RATE
+    rate = RATE / 6 if start else RATE
     optimizer = torch.optim.AdamW(net.parameters(), rate, weight_decay=DECAY)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, rate, total_steps=steps, pct_start=0.15)
     parts = {"net": net, "mean": mean, "optimizer": optimizer, "schedule": schedule}
@@ -527,6 +529,23 @@ def fit(arguments):
     net = fitted(frames, arguments.steps, arguments.width, arguments.work / f"{arguments.name}.checkpoint",
                  arguments.start)
     torch.save(net.state_dict(), arguments.work / f"{arguments.name}.pt")
+    write_all(net, frames, arguments)
+
+
+def mean(arguments):
+    import torch
+
+    frames = Frames(arguments.stores, 10**9, torch.device("cpu"))
+    net = network(arguments.width)
+    of_library(net, arguments.start, frames)
+    first, second = net.state_dict(), torch.load(arguments.of, map_location="cpu")
+    net.load_state_dict({key: torch.lerp(first[key], value, arguments.share) if value.dtype.is_floating_point else value
+                         for key, value in second.items()})
+    arguments.work.mkdir(parents=True, exist_ok=True)
+    write_all(net.eval(), frames, arguments)
+
+
+def write_all(net, frames, arguments):
     layers = rounded(net, frames)
     write(layers, arguments.work / arguments.name)
     if arguments.out:
@@ -540,18 +559,26 @@ def main():
     command.add_argument("tool", type=pathlib.Path)
     command.add_argument("store", type=pathlib.Path)
     command.add_argument("folders", type=pathlib.Path, nargs="+", help="folders of frames")
-    command = commands.add_parser("fit")
-    command.add_argument("stores", type=pathlib.Path, nargs="+")
-    command.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
-    command.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
-    command.add_argument("--steps", type=int, default=22000)
-    command.add_argument("--width", type=float, default=1.0, help="of all layers")
-    command.add_argument("--start", type=pathlib.Path, help="weights of an earlier fit (.pt) or of the library (hints.bin) to go on from, at half the rate")
-    command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
-    command.add_argument("--name", default="hints", help="of the file in the work folder")
+    for name in ("fit", "mean"):
+        command = commands.add_parser(name)
+        command.add_argument("stores", type=pathlib.Path, nargs="+")
+        command.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
+        command.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
+        command.add_argument("--width", type=float, default=1.0, help="of all layers")
+        command.add_argument("--name", default="hints", help="of the file in the work folder")
+        command.add_argument("--start", type=pathlib.Path, required=name == "mean",
+                             help="weights of an earlier fit (.pt) or of the library (hints.bin); a fit goes on from it, at a sixth of the rate")
+        if name == "fit":
+            command.add_argument("--steps", type=int, default=22000)
+            command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
+        else:
+            command.add_argument("--of", type=pathlib.Path, required=True, help="weights of a fit (.pt) that went on from it")
+            command.add_argument("--share", type=float, default=0.85, help="of the second one")
     arguments = parser.parse_args()
     if arguments.command == "fit":
         return fit(arguments)
+    if arguments.command == "mean":
+        return mean(arguments)
     gather(arguments.tool, arguments.store, [f for folder in arguments.folders for f in frames_in(folder)])
 
 

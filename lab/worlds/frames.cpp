@@ -7,6 +7,7 @@
 #include <cairn/io/image_files.hpp>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -31,6 +32,28 @@ int disparities_of(const Truth& truth) {
     most = std::max(most, *std::max_element(row, row + truth.disparity_px.width()));
   }
   return std::clamp((static_cast<int>(most) / 16 + 1) * 16, 16, 512);
+}
+
+/// The mean of the visible points of each id, in the left camera's frame.
+std::map<int, Vec3> visible_centres(const Truth& truth, const Rig& rig) {
+  std::map<int, std::pair<Vec3, int>> sums;
+  for (int y = 0; y < truth.ids.height(); ++y) {
+    for (int x = 0; x < truth.ids.width(); ++x) {
+      if (truth.ids(x, y) == 0) continue;
+      const float z = rig.focal_px * rig.baseline_m / truth.disparity_px(x, y);
+      auto& [sum, count] = sums[truth.ids(x, y)];
+      sum = sum + z * Vec3{(static_cast<float>(x) - rig.cx_px) / rig.focal_px,
+                           (static_cast<float>(y) - rig.cy_px) / rig.focal_px, 1};
+      ++count;
+    }
+  }
+  std::map<int, Vec3> centres;
+  for (const auto& [id, of_id] : sums) centres[id] = 1.0F / static_cast<float>(of_id.second) * of_id.first;
+  return centres;
+}
+
+nlohmann::ordered_json json_of(Vec3 v) {
+  return {v.x, v.y, v.z};
 }
 
 void write_text(const fs::path& file, const std::string& text) {
@@ -86,13 +109,27 @@ void write_frame(const WorldFrame& frame, const fs::path& folder) {
         << "\nbaseline=" << rig.baseline_m << "\nwidth=" << rig.size.width << "\nheight=" << rig.size.height
         << "\nndisp=" << disparities_of(truth) << "\n";
   write_text(unfinished / "calib.txt", calib.str());
+  std::ostringstream pose;
+  pose << "# left camera to world (x right, y down, z forward; z up), m\n";
+  const std::array<Vec3, 4> columns{rig.right, rig.down, rig.forward, rig.eye};
+  for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    for (const Vec3& column : columns) pose << column.*axis << (&column == &columns.back() ? "\n" : " ");
+  }
+  pose << "0 0 0 1\n";
+  write_text(unfinished / "pose.txt", pose.str());
   nlohmann::ordered_json scene{{"place", kPlaces.at(static_cast<std::size_t>(frame.world.place))},
                                {"objects", nlohmann::json::array()}};
+  const std::map<int, Vec3> centres = visible_centres(truth, rig);
   for (const Thing& thing : frame.world.things) {
-    scene["objects"].push_back({{"id", thing.id},
-                                {"kind", thing.kind},
-                                {"placed", thing.placed},
-                                {"size_m", {thing.size_m.x, thing.size_m.y, thing.size_m.z}}});
+    const auto visible = centres.find(thing.id);
+    scene["objects"].push_back(
+        {{"id", thing.id},
+         {"kind", thing.kind},
+         {"placed", thing.placed},
+         {"size_m", json_of(thing.size_m)},
+         {"centroid_world", json_of(thing.centre)},
+         {"centroid_visible_cam",
+          visible != centres.end() ? json_of(visible->second) : nlohmann::ordered_json()}});
   }
   write_text(unfinished / "scene.json",
              scene.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");

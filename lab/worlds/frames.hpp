@@ -19,8 +19,8 @@ struct WorldFrame {
 /// Renders and exposes a world, with `samples` rays per pixel.
 WorldFrame make_frame(World world, int samples);
 
-/// Writes left.png, right.png, disp_left.png, objects.png, occlusion.png, ground.png, calib.txt and scene.json, as in a
-/// data set of frames (docs/formats.md); the folder appears whole. Throws Error if it cannot be written.
+/// Writes left.png, right.png, disp_left.png, objects.png, occlusion.png, ground.png, calib.txt, pose.txt and scene.json,
+/// as in a data set of frames (docs/formats.md); the folder appears whole. Throws Error if it cannot be written.
 void write_frame(const WorldFrame& frame, const std::filesystem::path& folder);
 
 }  // namespace cairn::worlds

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // worlds frames FIRST LAST -o DIR: writes frames of worlds; worlds sheet FIRST LAST -o FILE.png: a contact sheet;
-// worlds yardstick -o DIR: the frames that choices are measured by (docs/worlds.md); worlds laboratory -o DIR: the paper's
+// worlds tours FIRST LAST -o DIR: sequences in which a thing is carried elsewhere; worlds yardstick -o DIR: the frames that choices are measured by (docs/worlds.md); worlds laboratory -o DIR: the paper's
 // experiment made again (docs/paper.md).
 #include <CLI/CLI.hpp>
 #include <atomic>
@@ -16,6 +16,7 @@
 
 #include "lab/worlds/frames.hpp"
 #include "lab/worlds/models.hpp"
+#include "lab/worlds/tours.hpp"
 
 namespace cairn::worlds {
 namespace {
@@ -59,18 +60,39 @@ void for_each_world(const Arguments& arguments, const Work& work) {
   if (trouble) std::rethrow_exception(trouble);
 }
 
+std::string numbered(const char* format, int number) {
+  std::array<char, 24> name{};
+  std::snprintf(name.data(), name.size(), format, number);
+  return name.data();
+}
+
 void write_frames(const Arguments& arguments) {
   fs::create_directories(arguments.out);
   for_each_world(arguments, [&](int i) {
-    std::array<char, 16> name{};
-    std::snprintf(name.data(), name.size(), "world_%05d", i);
-    const fs::path folder = fs::path(arguments.out) / name.data();
+    const fs::path folder = fs::path(arguments.out) / numbered("world_%05d", i);
     if (fs::exists(folder)) return;
     World world = make_world(arguments.world, i);
     world.scene.has_projector = arguments.has_projector;
     world.sensor.is_grey = world.sensor.is_grey || arguments.has_projector;
     write_frame(make_frame(std::move(world), arguments.samples), folder);
   });
+}
+
+void write_tours(const Arguments& arguments) {
+  for (int index = arguments.first; index <= arguments.last; ++index) {
+    const fs::path folder = fs::path(arguments.out) / numbered("tour_%03d", index);
+    if (fs::exists(folder / "events.json")) continue;
+    fs::create_directories(folder);
+    const Tour tour = make_tour(arguments.world, index);
+    Arguments of_frames = arguments;
+    of_frames.first = 0;
+    of_frames.last = static_cast<int>(tour.path.size()) - 1;
+    for_each_world(of_frames, [&](int i) {
+      const fs::path frame = folder / numbered("%03d", i);
+      if (!fs::exists(frame)) write_frame(make_frame(world_of(tour, i), arguments.samples), frame);
+    });
+    write_tour_files(tour, tour.world.scene.seed, folder);  // last: a folder with events.json is whole
+  }
 }
 
 /// Never changes: its scores are compared over the years.
@@ -93,10 +115,8 @@ void write_laboratory(Arguments arguments) {
     fs::create_directories(folder);
     arguments.last = kLaboratoryFrames - 1;
     for_each_world(arguments, [&](int i) {
-      std::array<char, 8> name{};
-      std::snprintf(name.data(), name.size(), "%03d", i);
-      if (!fs::exists(folder / name.data()))
-        write_frame(make_frame(make_laboratory(s, i), arguments.samples), folder / name.data());
+      const fs::path frame = folder / numbered("%03d", i);
+      if (!fs::exists(frame)) write_frame(make_frame(make_laboratory(s, i), arguments.samples), frame);
     });
   }
 }
@@ -166,6 +186,9 @@ int run(int argc, char** argv) {
   CLI::App* const yardstick = declare("yardstick", "writes the frames that choices are measured by");
   const CLI::App* const laboratory = declare("laboratory", "writes the four sequences of docs/paper.md");
   declare_drawn("sheet", "draws left images and ids");
+  const CLI::App* const tours = declare_drawn(
+      "tours",
+      "writes one folder per tour: a robot looks at things twice, and one was carried elsewhere meanwhile");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -191,7 +214,9 @@ int run(int argc, char** argv) {
   arguments.world.use = arguments.use == "fit" ? Use::fit : Use::yardstick;
   if (models_for(arguments.world.use).empty())
     std::cerr << "worlds: sweethome3d-furniture is not installed: families of shapes alone, no models\n";
-  frames->parsed() ? write_frames(arguments) : draw_sheet(arguments);
+  frames->parsed()  ? write_frames(arguments)
+  : tours->parsed() ? write_tours(arguments)
+                    : draw_sheet(arguments);
   return 0;
 }
 

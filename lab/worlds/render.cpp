@@ -380,6 +380,10 @@ Rendered render(const Scene& scene, int samples) {
           truth_of(scene, tracer)};
 }
 
+Truth truth_of(const Scene& scene) {
+  return truth_of(scene, Tracer(scene));
+}
+
 Image<Rgb> expose(const Picture& picture, const Sensor& sensor, bool is_right, std::uint64_t seed) {
   cv::Mat values(picture.size.height, picture.size.width, CV_32FC3);
   const float middle_x = static_cast<float>(picture.size.width - 1) / 2;

@@ -78,6 +78,8 @@ struct Rendered {
 
 /// Traces both views with `samples` rays per pixel: the same bits on every processor of one kind.
 Rendered render(const Scene& scene, int samples);
+/// The truth alone: a twentieth of the time.
+Truth truth_of(const Scene& scene);
 
 /// How the sensor turns light into bytes.
 struct Sensor {

@@ -11,6 +11,7 @@
 #include "lab/worlds/families_parts.hpp"
 #include "lab/worlds/models.hpp"
 #include "lab/worlds/shapes.hpp"
+#include "lab/worlds/tours.hpp"
 
 namespace cairn::worlds {
 namespace {
@@ -335,7 +336,7 @@ class Builder {
     body.mesh = moved(turned(made.mesh, kZ, yaw), {at.x, at.y, bottom});
     body.id = id;
     world_.scene.bodies.push_back(std::move(body));
-    world_.things.push_back({id, made.kind, how, high - low});
+    world_.things.push_back({id, made.kind, how, high - low, {at.x, at.y, bottom + high.z / 2}});
   }
 
   /// The height of a thing about a point, if it is level there.
@@ -709,7 +710,138 @@ class Builder {
     world_.sensor.is_grey = false;
   }
 
+  // ---- tours ----
+
+  void tour(Tour& tour) {
+    world_.place = Place::room;
+    const float radius = draw(dice_, 2.2, 2.9), side = 2 * (radius + 1.4F), depth = side - 3;
+    const Vec2 middle{(depth - 3) / 2, 0};
+    tour_path(tour, middle, radius);
+    const float height = draw(dice_, 2.4, 3.4);
+    light_room(depth, side, height);
+    const Look floor = marked(floor_look(dice_)), walls = marked(wall_look(dice_));
+    floor_like_ = floor;
+    enclose(depth, side, height, floor, dice_.chance(0.5) ? walls : wall_look(dice_), walls);
+    wall({-3, -side / 2, 0}, {0, side, 0}, height, walls, {1, 0});
+    Look ceiling;
+    ceiling.colours.fill({0.8F, 0.8F, 0.78F});
+    quad({-3, -side / 2, height}, {side, 0, 0}, {0, side, 0}, ceiling);
+
+    const Place2 look = tour.path.at(static_cast<std::size_t>(tour.first_look - 1));
+    const float eye = draw(dice_, 0.35, 1.1);
+    camera({look.at.x, look.at.y, eye}, look.heading,
+           std::atan2(eye, radius) * 180 / kPi + draw(dice_, -7, 1), draw(dice_, 0.6, 0.85),
+           draw(dice_, 0.08, 0.16));
+    nearest_ = 0.6F;
+    const Footprint ground{middle, {kGroup, kGroup}, look.heading};
+    const int count = dice_.between(5, 9);
+    for (int k = 0; k < count; ++k) {
+      const float size = draw(dice_, 0.25, 0.8);
+      Made made = thing(size, size < 0.5F);
+      for (int t = 0; t < 2 * kTries; ++t) {
+        const auto corners = ground.corners();
+        const float u = draw(dice_, 0, 1), v = draw(dice_, 0, 1);
+        const Vec2 at{corners[0].x + u * (corners[1].x - corners[0].x) + v * (corners[3].x - corners[0].x),
+                      corners[0].y + u * (corners[1].y - corners[0].y) + v * (corners[3].y - corners[0].y)};
+        if (put(made, at, draw(dice_, 0, 2 * kPi), 0, kTourGap, "free")) break;
+      }
+    }
+    sensor();
+    if (dice_.chance(0.5)) move_in_view(tour, ground);
+    if (dice_.chance(0.75)) carry_away(tour, ground);
+  }
+
  private:
+  static constexpr float kGroup = 1.2F;     // m, half a side of the square that the group stands in
+  static constexpr float kTourGap = 0.12F;  // m, between its things
+  static constexpr int kSeen = 307;         // of so many pixels of the image, one: 250 of 320×240
+
+  void tour_path(Tour& tour, Vec2 middle, float radius) {
+    constexpr int kFirst = 22, kSecond = 22;
+    constexpr float kCloser = 0.03F, kDrive = 0.1F, kTurn = 0.16F;  // m and rad per frame
+    const float from = draw(dice_, 0, 2 * kPi), arc = draw(dice_, 0.35, 2.1);
+    const float side = dice_.chance(0.5) ? 1.0F : -1.0F;  // 1: to the left around the middle
+    const auto add = [&](float angle, float distance, float heading) {
+      tour.path.push_back(
+          {{middle.x + distance * std::cos(angle), middle.y + distance * std::sin(angle)}, heading});
+    };
+    for (int k = 1; k <= kFirst; ++k)
+      add(from, radius + kCloser * static_cast<float>(kFirst - k), from + kPi);
+    tour.first_look = kFirst;
+    const int turns = static_cast<int>(std::ceil(kPi / 2 / kTurn));
+    for (int k = 1; k <= turns; ++k) add(from, radius, from + kPi - side * kPi / 2 * fraction(k, turns));
+    const int steps = static_cast<int>(std::ceil(arc * radius / kDrive));
+    for (int k = 1; k <= steps; ++k) {
+      const float angle = from + side * arc * fraction(k, steps);
+      add(angle, radius, angle + kPi - side * kPi / 2);
+    }
+    const float to = from + side * arc;
+    for (int k = 1; k <= turns; ++k) add(to, radius, to + kPi - side * kPi / 2 * (1 - fraction(k, turns)));
+    for (int k = 1; k <= kSecond; ++k) add(to, radius - kCloser * static_cast<float>(k), to + kPi);
+  }
+
+  /// Another place for a thing on the ground, where it is apart from everything that stands there.
+  std::optional<Footprint> another_place(const Standing& thing, const Footprint& ground, float least,
+                                         float most) {
+    const Vec2 at = thing.footprint.centre;
+    const float way = draw(dice_, 0, 2 * kPi), distance = draw(dice_, least, most);
+    Footprint there = thing.footprint;
+    there.centre = {at.x + distance * std::cos(way), at.y + distance * std::sin(way)};
+    if (!is_inside({there.centre, {0.01F, 0.01F}, 0}, Footprint{ground.centre, ground.half, 0}))
+      return std::nullopt;
+    return is_apart(thing, there) ? std::optional(there) : std::nullopt;
+  }
+  [[nodiscard]] bool is_apart(const Standing& thing, const Footprint& there) const {
+    return std::ranges::all_of(standing_, [&](const Standing& other) {
+      return other.id == thing.id || are_apart(other.footprint, there, kTourGap);
+    });
+  }
+
+  void move_in_view(Tour& tour, const Footprint& ground) {
+    if (standing_.empty()) return;
+    for (int k = 0; k < kTries; ++k) {
+      Standing& thing = standing_[static_cast<std::size_t>(dice_.below(static_cast<int>(standing_.size())))];
+      const auto there = another_place(thing, ground, 0.7F, 1.2F);
+      if (!there) continue;
+      const Vec2 from = thing.footprint.centre, to = there->centre;
+      bool is_open = true;
+      for (int j = 1; j < 10; ++j) {
+        Footprint between = *there;
+        between.centre = {from.x + fraction(j, 10) * (to.x - from.x),
+                          from.y + fraction(j, 10) * (to.y - from.y)};
+        is_open = is_open && is_apart(thing, between);
+      }
+      if (!is_open) continue;
+      tour.moves.push_back({thing.id, "moves in view", 4, 17, from, to, 0});
+      thing.footprint = *there;
+      return;
+    }
+  }
+
+  void carry_away(Tour& tour, const Footprint& ground) {
+    if (standing_.empty()) return;
+    const int last = static_cast<int>(tour.path.size()) - 1, when = (tour.first_look + last) / 2;
+    const auto seen = [&](int frame, int id) {
+      const Truth truth = truth_of(world_of(tour, frame).scene);
+      int count = 0;
+      for (int y = 0; y < truth.ids.height(); ++y)
+        count += static_cast<int>(std::count(truth.ids.row(y), truth.ids.row(y) + truth.ids.width(), id));
+      return count >= static_cast<int>(options_.size.area()) / kSeen;
+    };
+    for (int k = 0; k < 2 * kTries; ++k) {
+      const Standing& thing =
+          standing_[static_cast<std::size_t>(dice_.below(static_cast<int>(standing_.size())))];
+      const int id = thing.id;
+      if (std::ranges::find(tour.moves, id, &Move::id) != tour.moves.end()) continue;
+      const auto there = another_place(thing, ground, 0.5F, 1.8F);
+      if (!there || !seen(tour.first_look - 1, id) || !seen(last, id)) continue;
+      tour.moves.push_back({id, "carried away while out of view", when, when, thing.footprint.centre,
+                            there->centre, draw(dice_, -kPi, kPi)});
+      if (seen(last, id)) return;
+      tour.moves.pop_back();
+    }
+  }
+
   // ---- outdoors ----
 
   /// A large ground, a little uneven: a grid whose cells are as fine as they look.
@@ -901,6 +1033,15 @@ class Builder {
 
 }  // namespace
 
+namespace {
+
+Dice dice_of(const WorldOptions& options, int index) {
+  const std::uint64_t of_use = options.use == Use::fit ? 0 : 0xFEED;
+  return Dice(options.seed ^ of_use << 32U).fork(static_cast<std::uint64_t>(index));
+}
+
+}  // namespace
+
 World make_laboratory(int sequence, int frame) {
   World world;
   const WorldOptions options;
@@ -911,10 +1052,18 @@ World make_laboratory(int sequence, int frame) {
   return world;
 }
 
+Tour make_tour(const WorldOptions& options, int index) {
+  Tour tour;
+  const Dice dice = dice_of(options, index).fork(0x7042);
+  Dice last = dice.fork(99);
+  tour.world.scene.seed = last.bits();
+  Builder(tour.world, options, dice).tour(tour);
+  return tour;
+}
+
 World make_world(const WorldOptions& options, int index) {
   World world;
-  const std::uint64_t of_use = options.use == Use::fit ? 0 : 0xFEED;
-  const Dice dice = Dice(options.seed ^ of_use << 32U).fork(static_cast<std::uint64_t>(index));
+  const Dice dice = dice_of(options, index);
   Builder(world, options, dice).build();
   Dice last = dice.fork(99);
   world.scene.seed = last.bits();

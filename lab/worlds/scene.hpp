@@ -19,6 +19,7 @@ struct Thing {
   std::string kind;
   std::string placed;  // free, wall, on, touch, edge, inside, bars
   Vec3 size_m;
+  Vec3 centre;  // of the box around it
 };
 
 /// What to draw worlds of.

@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cairn/input/true_frames.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/disparity_files.hpp>
 #include <cairn/io/image_files.hpp>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <set>
 #include <thread>
 
 #include "lab/worlds/frames.hpp"
+#include "lab/worlds/shapes.hpp"
+#include "lab/worlds/tours.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace cairn::worlds {
@@ -184,6 +188,89 @@ TEST(Laboratory, ShowsItsObjectsInEveryFrameFromAMovingRobot) {
     }
     EXPECT_GT(areas[2][2], areas[0][2]) << "the robot comes nearer";
   }
+}
+
+/// A point of the world, from a pixel of a frame.
+Vec3 point_at(const World& world, const Truth& truth, int x, int y) {
+  const Rig& rig = world.scene.rig;
+  const float z = rig.focal_px * rig.baseline_m / truth.disparity_px(x, y);
+  return rig.eye + z * (rig.forward + (static_cast<float>(x) - rig.cx_px) / rig.focal_px * rig.right +
+                        (static_cast<float>(y) - rig.cy_px) / rig.focal_px * rig.down);
+}
+
+TEST(Tours, ShowAThingThatWasCarriedWhileTheRobotLookedAway) {
+  int carried = 0, moving = 0, tours = 0;
+  for (int index = 0; index < 8; ++index) {
+    const Tour tour = make_tour(small(0), index);
+    ++tours;
+    const int last = static_cast<int>(tour.path.size()) - 1;
+    const auto things_at = [&](int frame) {
+      const World world = world_of(tour, frame);
+      const Truth truth = truth_of(world.scene);
+      std::map<int, std::pair<Vec3, int>> middles;
+      for (int y = 0; y < truth.ids.height(); ++y) {
+        for (int x = 0; x < truth.ids.width(); ++x) {
+          auto& [sum, count] = middles[truth.ids(x, y)];
+          sum = sum + point_at(world, truth, x, y), ++count;
+        }
+      }
+      return middles;
+    };
+    for (const Move& move : tour.moves) {
+      const bool is_carried = move.first_frame == move.last_frame;
+      (is_carried ? carried : moving) += 1;
+      const Thing before =
+          world_of(tour, move.first_frame - 1).things.at(static_cast<std::size_t>(move.id - 1));
+      const Thing after = world_of(tour, move.last_frame).things.at(static_cast<std::size_t>(move.id - 1));
+      EXPECT_NEAR(before.centre.x, move.from.x, 1e-4);
+      EXPECT_NEAR(after.centre.x, move.to.x, 1e-4);
+      EXPECT_NEAR(after.centre.y, move.to.y, 1e-4);
+      EXPECT_GT(std::hypot(move.to.x - move.from.x, move.to.y - move.from.y), 0.5F);
+      if (!is_carried) continue;
+      EXPECT_FALSE(things_at(move.first_frame).contains(move.id)) << "while it is carried, nobody looks";
+      const auto early = things_at(tour.first_look - 1), late = things_at(last);
+      ASSERT_TRUE(early.contains(move.id) && late.contains(move.id)) << index;
+      // Its visible points are around the place that the truth names.
+      for (const auto& [seen, at] :
+           {std::pair(early.at(move.id), move.from), std::pair(late.at(move.id), move.to)}) {
+        const Vec3 middle = 1.0F / static_cast<float>(seen.second) * seen.first;
+        const float reach =
+            worlds::length(tour.world.things.at(static_cast<std::size_t>(move.id - 1)).size_m) / 2;
+        EXPECT_LT(std::hypot(middle.x - at.x, middle.y - at.y), reach);
+      }
+    }
+    // What stands still is at one place for all frames, so the poses are right.
+    const auto early = things_at(0), late = things_at(last);
+    for (const Thing& thing : tour.world.things) {
+      if (std::ranges::find(tour.moves, thing.id, &Move::id) != tour.moves.end()) continue;
+      for (const auto& frame : {early, late}) {
+        if (!frame.contains(thing.id)) continue;
+        const Vec3 middle = 1.0F / static_cast<float>(frame.at(thing.id).second) * frame.at(thing.id).first;
+        EXPECT_LT(worlds::length(middle - thing.centre), worlds::length(thing.size_m) / 2 + 0.01F)
+            << thing.kind;
+      }
+    }
+    EXPECT_EQ(things_at(tour.first_look + 20).size(), 1U) << "looks away from all things";
+  }
+  EXPECT_GE(carried, tours / 2);
+  EXPECT_GE(moving, 1);
+}
+
+TEST(Tours, AreWrittenAsASequenceWithItsTruth) {
+  const support::TemporaryFolder folder;
+  const Tour tour = make_tour(small(0), 0);
+  ASSERT_FALSE(tour.moves.empty());
+  for (int i = 0; i < 3; ++i)
+    write_frame(make_frame(world_of(tour, i), 1), folder.path() / std::to_string(i));
+  write_tour_files(tour, 1, folder.path());
+  const input::TrueSequence truth = input::load_truth(folder.path());
+  ASSERT_EQ(truth.frames.size(), 3U);
+  ASSERT_TRUE(truth.has_events);
+  ASSERT_EQ(truth.events.size(), tour.moves.size());
+  EXPECT_EQ(truth.events.back().id, tour.moves.back().id);
+  ASSERT_TRUE(truth.frames[1].world_from_camera);
+  EXPECT_NEAR(truth.frames[1].world_from_camera->translation_m.x, tour.path[1].at.x, 1e-3);
+  EXPECT_FALSE(truth.frames[1].places.empty());
 }
 
 TEST(Projector, LightsTheSamePointsForBothCameras) {
