@@ -401,7 +401,7 @@ def loss_of(output, truth, down, across):
                         (middle * weight).sum() / (weight.sum() + 1), 0.3 * (size * weight).sum() / (weight.sum() + 1)])
 
 
-def fitted(frames, steps, width, checkpoint, start=None):
+def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
     """A network fitted to the frames; its weights are an exponential average over the last steps."""
     import torch
 
@@ -416,7 +416,6 @@ def fitted(frames, steps, width, checkpoint, start=None):
     mean.load_state_dict(net.state_dict())
     kept, new = ([v for v in one.state_dict().values() if v.dtype.is_floating_point] for one in (mean, net))
     sampler = Sampler(frames)
-    rate = RATE / 6 if start else RATE
     optimizer = torch.optim.AdamW(net.parameters(), rate, weight_decay=DECAY)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, rate, total_steps=steps, pct_start=0.15)
     parts = {"net": net, "mean": mean, "optimizer": optimizer, "schedule": schedule}
@@ -527,7 +526,7 @@ def fit(arguments):
     print(f"{len(frames)} frames, {arguments.steps} steps, on {device}", flush=True)
     arguments.work.mkdir(parents=True, exist_ok=True)
     net = fitted(frames, arguments.steps, arguments.width, arguments.work / f"{arguments.name}.checkpoint",
-                 arguments.start)
+                 arguments.start, arguments.rate)
     torch.save(net.state_dict(), arguments.work / f"{arguments.name}.pt")
     write_all(net, frames, arguments)
 
@@ -567,9 +566,10 @@ def main():
         command.add_argument("--width", type=float, default=1.0, help="of all layers")
         command.add_argument("--name", default="hints", help="of the file in the work folder")
         command.add_argument("--start", type=pathlib.Path, required=name == "mean",
-                             help="weights of an earlier fit (.pt) or of the library (hints.bin); a fit goes on from it, at a sixth of the rate")
+                             help="weights of an earlier fit (.pt) or of the library (hints.bin); a fit goes on from it")
         if name == "fit":
             command.add_argument("--steps", type=int, default=22000)
+            command.add_argument("--rate", type=float, default=RATE, help="of learning, at most; less where a fit goes on")
             command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
         else:
             command.add_argument("--of", type=pathlib.Path, required=True, help="weights of a fit (.pt) that went on from it")

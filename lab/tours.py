@@ -46,18 +46,18 @@ def main():
         changes, again = s["changes"], s["landmarks"]
         rows.append([name, f"{changes['found']} of {changes['expected']}", str(changes["wrong"]),
                      f"{again['re_identified']} of {again['in_view_again']}", str(again["wrong"]),
-                     number(100 * s["tracks"]["IDF1"], ".0f"), number(s["trajectory"]["end_error_m"], ".2f")])
+                     number(100 * s["tracks"]["IDF1"], ".0f"), number(s["trajectory"]["end_error_m"] if s["trajectory"] else math.nan, ".2f")])
     print(table(["tour", "moved", "wrong changes", "recognised", "mistaken", "IDF1", "end, m"], rows))
     scores = [s for _, s in named]
     expected, again = total(scores, "changes", "expected"), total(scores, "landmarks", "in_view_again")
     errors = [s["changes"]["median_error_m"] for s in scores if s["changes"]["median_error_m"] is not None]
     known = sum(s["positions"]["with_covariance"] for s in scores)
-    inside = sum(s["positions"]["inside_95"] * s["positions"]["with_covariance"] for s in scores)
+    inside = sum((s["positions"]["inside_95"] or 0) * s["positions"]["with_covariance"] for s in scores)
     print(f"""
 carried objects reported as moved: {total(scores, 'changes', 'found')} of {expected}, median error {number(statistics.median(errors or [math.nan]), '.2f')} m
 wrong changes: {total(scores, 'changes', 'wrong')}, per landmark seen again {percent(total(scores, 'changes', 'wrong') / max(again, 1))} %
 recognised: {total(scores, 'landmarks', 're_identified')} of {again}; mistaken: {total(scores, 'landmarks', 'wrong')}
-positions within the stated 95 % ellipsoid: {percent(inside / max(known, 1))} %; median of the tours' 95 % of errors {number(statistics.median(s['positions']['in_map']['p95_m'] for s in scores), '.2f')} m
+positions within the stated 95 % ellipsoid: {percent(inside / max(known, 1))} %; median of the tours' 95 % of errors {number(statistics.median([s['positions']['in_map']['p95_m'] for s in scores if s['positions']['in_map']['p95_m']] or [math.nan]), '.2f')} m
 IDF1 in the mean {number(100 * statistics.mean(s['tracks']['IDF1'] for s in scores))}, HOTA {number(100 * statistics.mean(s['tracks']['HOTA'] for s in scores))}""")
 
 

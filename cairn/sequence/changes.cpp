@@ -27,14 +27,14 @@ bool may_be_same(const Landmark& a, const Landmark& b) {
   return may_be(candidate_of(a, {}), b);
 }
 
+}  // namespace
+
 std::vector<int> frames_of(const LandmarksState& state, LandmarkId id) {
   for (const LandmarksState::VanishedLandmark& vanished : state.vanished) {
     if (vanished.landmark == id) return vanished.frames;
   }
   return {};
 }
-
-}  // namespace
 
 Landmark* find_in(LandmarkMap& map, LandmarkId id) {
   return const_cast<Landmark*>(find(map, id));  // NOLINT: the map is ours to change
@@ -113,6 +113,8 @@ void apply(const Move& move, LandmarksState& state) {
     evidence.landmark = same.id;
     evidence.is_recognised = true;
     evidence.score = move.score;
+    evidence.before.reset();
+    evidence.frames_left.clear();
   }
   std::erase_if(state.map.list, [&](const Landmark& l) { return l.id == place.id; });
   std::erase(state.found, place.id);

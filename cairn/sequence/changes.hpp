@@ -15,6 +15,9 @@ Landmark* find_in(LandmarkMap& map, LandmarkId id);
 /// Whether two places of one landmark are apart beyond doubt.
 bool are_apart(const Eigen::Vector3d& way, const Matrix3& covariance, const LandmarksConfig& config);
 
+/// The frames of this run that show the place of a landmark empty.
+std::vector<int> frames_of(const LandmarksState& state, LandmarkId id);
+
 /// The landmark is no longer one that disappeared in this run.
 void forget_vanished(LandmarksState& state, LandmarkId id);
 

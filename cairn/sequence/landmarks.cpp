@@ -18,6 +18,7 @@ using landmarks::find_in;
 using landmarks::find_moved;
 using landmarks::floor_frames_at;
 using landmarks::forget_vanished;
+using landmarks::frames_of;
 using landmarks::kFloorFrames;
 using landmarks::kPositionAndYaw;
 using landmarks::matrix;
@@ -36,7 +37,7 @@ constexpr double kSeen = 0.85;
 constexpr double kMissed = -0.4;
 constexpr double kSeenThrough = -1.5;
 constexpr double kGone = -2;
-constexpr int kGoneFrames = 5;
+constexpr std::size_t kGoneFrames = 5;
 constexpr double kThroughShare = 0.6;
 constexpr double kThroughMargin = 0.3;  // added to the share visible through the place of a present object
 constexpr int kMinPixels = 200;
@@ -235,7 +236,7 @@ void update(Landmark& landmark, const TrackEvidence& evidence, const Track& trac
   landmark.covariance_m2 = landmarks::rows_of(seen.covariance_m2);
   landmark.size = evidence.size;
   if (candidate.height_over_floor_m > 0) landmark.height_over_floor_m = candidate.height_over_floor_m;
-  if (evidence.before) {
+  if (evidence.before && evidence.frames_left.empty()) {  // else its old place is doubtful
     const Landmark& before = *evidence.before;
     const Matrix3 a = matrix(before.covariance_m2).inverse();
     const Matrix3 b = seen.covariance_m2.inverse();
@@ -263,7 +264,7 @@ void learn_floor(LandmarkMap& map, const LandmarkFrame& frame, const Pose& map_f
       if (!seen || seen->z > kReach * frame.rig.baseline_m) continue;
       const Point3 at = map_from_camera(
           {static_cast<double>(seen->x), static_cast<double>(seen->y), static_cast<double>(seen->z)});
-      if (std::abs(at.z) > kFlat_m) continue;
+      if (std::abs(frame.height_m(*seen, at)) > kFlat_m) continue;
       cells.push_back(landmarks::cell_at(at));
     }
   }
@@ -360,6 +361,7 @@ void bind(LandmarksState& state, const LandmarkPair& pair, const LandmarkFrame& 
   if (landmark.is_gone) {
     landmark.is_gone = false;
     landmark.log_odds = 0;
+    evidence.frames_left = frames_of(state, landmark.id);  // if it is back elsewhere, it was carried
     forget_vanished(state, landmark.id);
     events.push_back({LandmarkEventKind::back,
                       frame.stamp,
@@ -404,6 +406,28 @@ std::vector<LandmarkOfTrack> unchanged_tracks(LandmarksState& state, const Landm
   return all;
 }
 
+/// The frames in which free floor was seen at a new track and all around it: an object that stood there before, but was
+/// not found, would have hidden the floor behind it.
+int free_floor_before(const LandmarksState& state, const Track& track, const LandmarkFrame& frame) {
+  constexpr int kAround = 8;
+  const auto across_m = static_cast<double>(track.extent_m.x);
+  Point3 away = track.position_m - frame.odom_from_camera.translation_m;
+  away.z = 0;
+  const Point3 centre =
+      track.position_m + (nearer_surface::kShare * across_m / std::max(1e-6, length(away))) * away;
+  const auto frames_at = [&](Point3 in_odom) {
+    return floor_frames_at(state.map, landmarks::cell_at(state.located.map_from_odom(in_odom)));
+  };
+  const double radius_m = across_m / 2 + kFloorCell_m;
+  int least = frames_at(centre);
+  for (int k = 0; k < kAround; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kAround;
+    least = std::min(least,
+                     frames_at(centre + Point3{radius_m * std::cos(angle), radius_m * std::sin(angle), 0}));
+  }
+  return least;
+}
+
 /// Updates the evidence of each track.
 void gather_all(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config) {
   const Tracks& tracks = *frame.tracks;
@@ -415,9 +439,7 @@ void gather_all(LandmarksState& state, const LandmarkFrame& frame, const Landmar
       TrackEvidence fresh;
       fresh.track = track.id;
       fresh.first = std::max(track.first, state.segment_began);
-      if (state.is_located)
-        fresh.floor_before =
-            floor_frames_at(state.map, landmarks::cell_at(state.located.map_from_odom(track.position_m)));
+      if (state.is_located) fresh.floor_before = free_floor_before(state, track, frame);
       at = state.tracks.insert(at, fresh);
     }
     if (track.object == ObjectId::none) continue;
@@ -557,6 +579,45 @@ struct LandmarkRefresh {
   bool has_added = false;
 };
 
+/// Whether a frame shows what is behind a landmark in its place.
+bool is_seen_through(const Landmark& landmark, const Expectation& there) {
+  const int samples = std::max(1, there.samples());
+  const double farther = static_cast<double>(there.farther) / samples;
+  return there.in_view >= kMinPixels && 2 * there.nearer <= samples &&
+         farther >= std::max(kThroughShare, landmark.open_share + kThroughMargin);
+}
+
+/// A landmark that was recognised near its place, but apart from it by more than both uncertainties allow, was carried if
+/// five frames show its own place empty.
+void look_at_old_place(LandmarksState& state, TrackEvidence& evidence, const Track& track,
+                       const LandmarkFrame& frame, const LandmarksConfig& config,
+                       std::vector<LandmarkEvent>& events) {
+  if (!evidence.before) return;
+  const Landmark& before = *evidence.before;
+  const Candidate candidate = candidate_of(evidence, track);
+  const Placement here = landmarks::place(candidate, state.located);
+  const Eigen::Vector3d way = here.position_m - vector(before.position_m);
+  const double score = score_of(candidate, before);
+  if (!are_apart(way, here.covariance_m2 + matrix(before.covariance_m2), config) ||
+      score < static_cast<double>(config.min_score)) {
+    evidence.frames_left.clear();
+    return;
+  }
+  const Expectation there = expect(before, frame, state.located.map_from_odom);
+  if (is_seen_through(before, there)) {
+    evidence.frames_left.push_back(frame.index);
+  } else if (2 * there.agree > there.samples()) {
+    evidence.frames_left.clear();
+  }
+  if (evidence.frames_left.size() < kGoneFrames) return;
+  const double was_there = before.is_gone ? 1 : probability_of(before.log_odds);
+  events.push_back({LandmarkEventKind::moved, frame.stamp, before.id, point(here.position_m), point(way),
+                    was_there * score, evidence.frames_left});
+  evidence.before.reset();
+  evidence.frames_left.clear();
+  if (state.closure) std::erase(state.closure->tracks, evidence.track);
+}
+
 /// Creates landmarks, and updates those in view.
 LandmarkRefresh update_seen(LandmarksState& state, const LandmarkFrame& frame, const LandmarksConfig& config,
                             std::vector<LandmarkEvent>& events) {
@@ -581,6 +642,7 @@ LandmarkRefresh update_seen(LandmarksState& state, const LandmarkFrame& frame, c
       if (evidence.refusal != LandmarkRefusal::none) continue;
       set_down(state, evidence, *landmark, track, frame, config, events);
     }
+    look_at_old_place(state, evidence, track, frame, config, events);
     update(*landmark, evidence, track, state, frame);
     if (evidence.cut_ago > 0) {
       const Point3 camera = (state.located.map_from_odom * frame.odom_from_camera).translation_m;
@@ -594,11 +656,10 @@ LandmarkRefresh update_seen(LandmarksState& state, const LandmarkFrame& frame, c
 /// Weighs what a frame shows of a landmark that is not seen in it. Returns whether it became gone.
 bool look_for(LandmarksState& state, Landmark& landmark, const Expectation& there, const LandmarkFrame& frame,
               std::vector<LandmarkEvent>& events) {
-  const int samples = std::max(1, there.samples());
+  const int samples = there.samples();
   if (landmark.is_gone || there.in_view < kMinPixels || 2 * there.nearer > samples) return false;
   ++landmark.expected;
-  const double farther = static_cast<double>(there.farther) / samples;
-  if (farther < std::max(kThroughShare, landmark.open_share + kThroughMargin)) {
+  if (!is_seen_through(landmark, there)) {
     // Another object, or holes: weak evidence against it.
     if (2 * there.agree < samples) landmark.log_odds = std::max(landmark.log_odds + kMissed, -kLargestOdds);
     return false;
@@ -609,7 +670,7 @@ bool look_for(LandmarksState& state, Landmark& landmark, const Expectation& ther
                                [&](const auto& v) { return v.landmark == landmark.id; });
   if (vanished == state.vanished.end()) vanished = state.vanished.insert(vanished, {landmark.id, {}});
   vanished->frames.push_back(frame.index);
-  if (landmark.log_odds >= kGone || landmark.seen_through < kGoneFrames) return false;
+  if (landmark.log_odds >= kGone || landmark.seen_through < static_cast<int>(kGoneFrames)) return false;
   landmark.is_gone = true;
   events.push_back({LandmarkEventKind::gone,
                     frame.stamp,
@@ -685,6 +746,16 @@ LandmarkFrame landmark_frame(const TrackedFrame& step, const StereoRig& rig, Vie
   frame.left = left;
   frame.left_rgb = left_rgb;
   frame.rig = rig;
+  // Another plane than the floor of the map, such as a table or a ramp, tells no heights over it.
+  constexpr double kSameFloor_m = 0.1, kUpright = 0.995;  // 6°
+  frame.floor = floor_frame(step.frame.ground, rig);
+  if (frame.floor) {
+    const Vec3& up = frame.floor->up;
+    const double height_m = step.map_from_camera.translation_m.z;
+    if (std::abs(double{frame.floor->camera_height_m} - height_m) > kSameFloor_m ||
+        step.map_from_camera.rotated({up.x, up.y, up.z}).z < kUpright)
+      frame.floor.reset();
+  }
   for (const Track& track : step.tracks.list) {
     if (track.object == ObjectId::none) continue;
     const auto at = static_cast<std::size_t>(track.object) - 1;

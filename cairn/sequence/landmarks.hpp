@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cairn/core/stereo_pair.hpp>
+#include <cairn/scene/floor_frame.hpp>
 #include <limits>
 #include <optional>
 #include <string>
@@ -183,6 +184,12 @@ struct LandmarkFrame {
   View<const Gray> left;     // for crops; may be empty
   View<const Rgb> left_rgb;  // may be empty
   StereoRig rig;
+  std::optional<FloorFrame> floor;  // as this frame shows it; the map's pitch drifts
+
+  /// The height of a point over the floor of this frame, or else over that of the map.
+  [[nodiscard]] double height_m(Vec3 in_camera_m, Point3 in_map_m) const {
+    return floor ? double{floor->to_floor(in_camera_m).z} : in_map_m.z;
+  }
 };
 /// Whether the motion of the frame was refused or is doubtful: its pose is then a guess, even with wheel
 /// odometry, and the frame is not used to judge the map. `off` is not a refusal: poses are known, or not
@@ -238,8 +245,9 @@ struct TrackEvidence {
   bool is_recognised = false;  // matched to an earlier landmark
   bool was_moving = false;
   Point3 stood_m;                  // position of the track when it became static, in the odometry frame
-  int floor_before = 0;            // earlier frames with free floor at its position
+  int floor_before = 0;            // earlier frames with free floor all over its place
   std::optional<Landmark> before;  // the landmark as it was before this track, for a recognised one
+  std::vector<int> frames_left;    // in which its place was seen empty, though it is elsewhere
   double score = 0;
 };
 

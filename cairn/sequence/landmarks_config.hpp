@@ -12,7 +12,7 @@ struct LandmarksConfig {
   float min_baseline = 0.1F;  // m
   float moved = 0.3F;         // m
   // Constants, not options.
-  float max_sigma = 0.10F;   // m; largest standard deviation of a position on the floor
+  float max_sigma = 0.25F;   // m; largest standard deviation of a position on the floor
   float min_angle = 5.0F;    // degrees; smallest angle between viewpoints, unless min_baseline is reached
   float gate = 16.3F;        // χ² of 3 degrees of freedom, 0.999
   float min_score = 0.8F;    // similarity of colours of a recognised landmark

@@ -752,12 +752,13 @@ class Builder {
   }
 
  private:
+  static constexpr int kSecondLook = 22;    // frames
   static constexpr float kGroup = 1.2F;     // m, half a side of the square that the group stands in
   static constexpr float kTourGap = 0.12F;  // m, between its things
   static constexpr int kSeen = 307;         // of so many pixels of the image, one: 250 of 320×240
 
   void tour_path(Tour& tour, Vec2 middle, float radius) {
-    constexpr int kFirst = 22, kSecond = 22;
+    constexpr int kFirst = 22;
     constexpr float kCloser = 0.03F, kDrive = 0.1F, kTurn = 0.16F;  // m and rad per frame
     const float from = draw(dice_, 0, 2 * kPi), arc = draw(dice_, 0.35, 2.1);
     const float side = dice_.chance(0.5) ? 1.0F : -1.0F;  // 1: to the left around the middle
@@ -777,7 +778,7 @@ class Builder {
     }
     const float to = from + side * arc;
     for (int k = 1; k <= turns; ++k) add(to, radius, to + kPi - side * kPi / 2 * (1 - fraction(k, turns)));
-    for (int k = 1; k <= kSecond; ++k) add(to, radius - kCloser * static_cast<float>(k), to + kPi);
+    for (int k = 1; k <= kSecondLook; ++k) add(to, radius - kCloser * static_cast<float>(k), to + kPi);
   }
 
   /// Another place for a thing on the ground, where it is apart from everything that stands there.
@@ -820,13 +821,15 @@ class Builder {
 
   void carry_away(Tour& tour, const Footprint& ground) {
     if (standing_.empty()) return;
-    const int last = static_cast<int>(tour.path.size()) - 1, when = (tour.first_look + last) / 2;
+    const int last = static_cast<int>(tour.path.size()) - 1,
+              when = (tour.first_look + last - kSecondLook) / 2;  // on the arc
+    const int enough = static_cast<int>(options_.size.area()) / kSeen;
     const auto seen = [&](int frame, int id) {
       const Truth truth = truth_of(world_of(tour, frame).scene);
       int count = 0;
       for (int y = 0; y < truth.ids.height(); ++y)
         count += static_cast<int>(std::count(truth.ids.row(y), truth.ids.row(y) + truth.ids.width(), id));
-      return count >= static_cast<int>(options_.size.area()) / kSeen;
+      return count;
     };
     for (int k = 0; k < 2 * kTries; ++k) {
       const Standing& thing =
@@ -834,10 +837,12 @@ class Builder {
       const int id = thing.id;
       if (std::ranges::find(tour.moves, id, &Move::id) != tour.moves.end()) continue;
       const auto there = another_place(thing, ground, 0.5F, 1.8F);
-      if (!there || !seen(tour.first_look - 1, id) || !seen(last, id)) continue;
+      if (!there || seen(tour.first_look - 1, id) < enough || seen(last, id) < enough ||
+          seen(when - 1, id) > 0)
+        continue;
       tour.moves.push_back({id, "carried away while out of view", when, when, thing.footprint.centre,
                             there->centre, draw(dice_, -kPi, kPi)});
-      if (seen(last, id)) return;
+      if (seen(last, id) >= enough && seen(when, id) == 0) return;
       tour.moves.pop_back();
     }
   }
@@ -1030,10 +1035,6 @@ class Builder {
   std::optional<Footprint> table_;
   std::optional<std::pair<float, float>> kerb_;  // its y, and its height
 };
-
-}  // namespace
-
-namespace {
 
 Dice dice_of(const WorldOptions& options, int index) {
   const std::uint64_t of_use = options.use == Use::fit ? 0 : 0xFEED;

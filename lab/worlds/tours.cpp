@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "lab/worlds/dice.hpp"
 #include "lab/worlds/shapes.hpp"
@@ -77,8 +78,9 @@ void write_tour_files(const Tour& tour, std::uint64_t seed, const std::filesyste
     path << i << ',' << t << ',' << now.at.x << ',' << now.at.y << ',' << now.heading << '\n';
     const double speed = kTourRateHz * std::hypot(now.at.x - before.at.x, now.at.y - before.at.y);
     const double turn = kTourRateHz * double{now.heading - before.heading};
-    wheels << i << ',' << t << ',' << speed * (1 + kWheelError * dice.normal()) << ','
-           << turn * (1 + kWheelError * dice.normal()) + (i > 0 ? kTurnNoise * dice.normal() : 0) << '\n';
+    const double of_speed = dice.normal(), of_turn = dice.normal(), noise = i > 0 ? dice.normal() : 0;
+    wheels << i << ',' << t << ',' << speed * (1 + kWheelError * of_speed) << ','
+           << turn * (1 + kWheelError * of_turn) + kTurnNoise * noise << '\n';
   }
   close(path, trajectory);
   close(wheels, odometry);

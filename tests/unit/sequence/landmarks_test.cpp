@@ -4,6 +4,7 @@
 
 #include <cairn/sequence/landmarks.hpp>
 #include <functional>
+#include <optional>
 #include <set>
 #include <support/drawn_room.hpp>
 
@@ -236,6 +237,71 @@ TEST(Landmarks, AreReportedMovedWithBothPositions) {
     EXPECT_GE(changes[0].frames.size(), 5U);
     EXPECT_GT(changes[0].probability, 0.5);
   }
+}
+
+/// A room, and the same after a thing was carried by 60 cm to a free place on the same circle.
+std::optional<DrawnRoom> with_thing_beside(const DrawnRoom& room, int thing) {
+  DrawnRoom after = room;
+  Cylinder& moved = after.things[static_cast<std::size_t>(thing) - 1];
+  const double angle = std::atan2(moved.y, moved.x), radius = std::hypot(moved.x, moved.y);
+  for (const double turn : {0.6 / radius, -0.6 / radius}) {
+    moved.x = radius * std::cos(angle + turn), moved.y = radius * std::sin(angle + turn);
+    const bool is_free = std::ranges::all_of(room.things, [&](const Cylinder& c) {
+      return c.thing == thing || std::hypot(c.x - moved.x, c.y - moved.y) > 0.9;
+    });
+    if (is_free) return after;
+  }
+  return std::nullopt;
+}
+
+TEST(Landmarks, RecognisedBesideTheirEmptyPlaceHaveMoved) {
+  int rooms = 0, reported = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const DrawnRoom before = DrawnRoom::random(seed, 8);
+    Excursion run;
+    run.lap(before);
+    // The one that has been out of view for longest but one: no track of it is left.
+    const auto list = run.state.map.list;
+    const auto unseen = std::ranges::min_element(
+        list, {}, [&](const Landmark& l) { return l.id == list.front().id ? Stamp{INT64_MAX} : l.last; });
+    const LandmarkId id = unseen->id;
+    const int thing = *run.things_of.at(id).begin();
+    const auto after = with_thing_beside(before, thing);
+    if (!after) continue;
+    ++rooms;
+    // An uncertain place of the thing allows to recognise it beside that.
+    for (Landmark& landmark : run.state.map.list) {
+      if (landmark.id == id) landmark.covariance_m2 = {0.026, 0, 0, 0, 0.026, 0, 0, 0, 0.01};
+    }
+    run.lap(*after);
+    const auto changes = changes_of(run.events);
+    ASSERT_LE(changes.size(), 1U) << "room " << seed;
+    if (changes.empty()) continue;  // not every lap shows five frames of the empty place
+    ++reported;
+    EXPECT_EQ(changes[0].kind, LandmarkEventKind::moved);
+    EXPECT_EQ(changes[0].landmark, id);
+    EXPECT_NEAR(std::hypot(changes[0].moved_by_m.x, changes[0].moved_by_m.y), 0.6, 0.2);
+    const Cylinder& now = after->things[static_cast<std::size_t>(thing) - 1];
+    const Point3 known = find(run.state.map, id)->position_m;
+    EXPECT_LT(std::hypot(known.x - now.x, known.y - now.y), 0.15) << "its old place does not count any more";
+  }
+  EXPECT_GE(rooms, 3);
+  EXPECT_GE(reported, 2) << "of " << rooms;
+}
+
+TEST(Landmarks, WithAWrongPlaceHaveNotMovedWhileNothingShowsIt) {
+  const DrawnRoom room = DrawnRoom::random(1, 8);
+  Excursion run;
+  run.lap(room);
+  const LandmarkId id = run.things_of.begin()->first;
+  for (Landmark& landmark : run.state.map.list) {
+    if (landmark.id != id) continue;
+    landmark.position_m.x += 0.5;
+    landmark.covariance_m2 = {0.02, 0, 0, 0, 0.02, 0, 0, 0, 0.01};
+  }
+  run.holes = true;  // so nothing is seen of its place
+  run.lap(room);
+  EXPECT_TRUE(changes_of(run.events).empty());
 }
 
 TEST(Landmarks, AreReportedGoneOnceTheirPositionIsSeenEmptyAndBackLater) {
