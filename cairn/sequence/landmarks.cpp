@@ -109,6 +109,15 @@ LandmarkOfTrack of_track(const TrackEvidence& evidence) {
           evidence.is_recognised, evidence.score};
 }
 
+/// The centre of an object whose visible surface is where the track is.
+Point3 centre_behind(const Track& track, Point3 camera) {
+  Point3 away = track.position_m - camera;
+  away.z = 0;
+  const double distance = std::max(1e-6, length(away));
+  return track.position_m +
+         (nearer_surface::kShare * static_cast<double>(track.extent_m.x) / distance) * away;
+}
+
 // ---- one frame, step by step ----
 
 void gather(TrackEvidence& evidence, const Track& track, const LandmarkFrame& frame, bool is_cut,
@@ -150,10 +159,7 @@ void gather(TrackEvidence& evidence, const Track& track, const LandmarkFrame& fr
   follow(evidence.size.narrowest_m, across, true);
   follow(evidence.size.widest_m, across, false);
   follow(evidence.size.height_m, height, false);
-  Point3 away = track.position_m - camera;
-  away.z = 0;
-  const double distance = std::max(1e-6, length(away));
-  const Point3 centre = track.position_m + (nearer_surface::kShare * across / distance) * away;
+  const Point3 centre = centre_behind(track, camera);
   // The track's filter averages noise; this averages over viewing directions.
   constexpr int kMax = 20;
   evidence.centres = std::min(evidence.centres + 1, kMax);
@@ -410,15 +416,11 @@ std::vector<LandmarkOfTrack> unchanged_tracks(LandmarksState& state, const Landm
 /// not found, would have hidden the floor behind it.
 int free_floor_before(const LandmarksState& state, const Track& track, const LandmarkFrame& frame) {
   constexpr int kAround = 8;
-  const auto across_m = static_cast<double>(track.extent_m.x);
-  Point3 away = track.position_m - frame.odom_from_camera.translation_m;
-  away.z = 0;
-  const Point3 centre =
-      track.position_m + (nearer_surface::kShare * across_m / std::max(1e-6, length(away))) * away;
+  const Point3 centre = centre_behind(track, frame.odom_from_camera.translation_m);
   const auto frames_at = [&](Point3 in_odom) {
     return floor_frames_at(state.map, landmarks::cell_at(state.located.map_from_odom(in_odom)));
   };
-  const double radius_m = across_m / 2 + kFloorCell_m;
+  const double radius_m = static_cast<double>(track.extent_m.x) / 2 + kFloorCell_m;
   int least = frames_at(centre);
   for (int k = 0; k < kAround; ++k) {
     const double angle = 2 * std::numbers::pi * k / kAround;

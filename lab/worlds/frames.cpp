@@ -56,13 +56,13 @@ nlohmann::ordered_json json_of(Vec3 v) {
   return {v.x, v.y, v.z};
 }
 
+}  // namespace
+
 void write_text(const fs::path& file, const std::string& text) {
   std::ofstream out(file);
   out << text;
   if (!out.flush()) throw Error(file.string() + ": cannot be written");
 }
-
-}  // namespace
 
 WorldFrame make_frame(World world, int samples) {
   WorldFrame frame{std::move(world), {}, {}, {}};

@@ -91,7 +91,7 @@ void write_tours(const Arguments& arguments) {
       const fs::path frame = folder / numbered("%03d", i);
       if (!fs::exists(frame)) write_frame(make_frame(world_of(tour, i), arguments.samples), frame);
     });
-    write_tour_files(tour, tour.world.scene.seed, folder);  // last: a folder with events.json is whole
+    write_tour_files(tour, folder);  // last: a folder with events.json is whole
   }
 }
 

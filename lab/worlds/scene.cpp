@@ -38,6 +38,12 @@ struct Footprint {
     };
     return {at(-x, -y), at(x, -y), at(x, y), at(-x, y)};
   }
+  /// A point of it: u and v from 0 to 1 along its sides.
+  [[nodiscard]] Vec2 point(float u, float v) const {
+    const auto c = corners();
+    return {c[0].x + u * (c[1].x - c[0].x) + v * (c[3].x - c[0].x),
+            c[0].y + u * (c[1].y - c[0].y) + v * (c[3].y - c[0].y)};
+  }
 };
 
 /// Whether two rectangles are apart: along one of their four directions, they do not overlap.
@@ -358,10 +364,8 @@ class Builder {
   bool add_on_top() {
     for (int k = 0; k < 2 * kTries; ++k) {
       const Standing below = dice_.pick(standing_);
-      const auto corners = below.footprint.corners();
       const float u = draw(dice_, 0.1, 0.9), v = draw(dice_, 0.1, 0.9);
-      const Vec2 at{corners[0].x + u * (corners[1].x - corners[0].x) + v * (corners[3].x - corners[0].x),
-                    corners[0].y + u * (corners[1].y - corners[0].y) + v * (corners[3].y - corners[0].y)};
+      const Vec2 at = below.footprint.point(u, v);
       const float room = std::min(below.footprint.half.x, below.footprint.half.y) * draw(dice_, 0.2, 0.9);
       const auto height = level_at(below, at, 0.6F * room);
       if (!height) continue;
@@ -568,6 +572,12 @@ class Builder {
     wall({-3, width / 2, 0}, {depth + 3, 0, 0}, height, walls, {0, -1});
   }
 
+  void ceiling(float depth, float width, float height) {
+    Look look;
+    look.colours.fill({0.8F, 0.8F, 0.78F});
+    quad({-3, -width / 2, height}, {depth + 3, 0, 0}, {0, width, 0}, look);
+  }
+
   void room() {
     const bool is_corridor = world_.place == Place::corridor, is_clutter = world_.place == Place::clutter;
     const float height = draw(dice_, 2.3, 3.6);
@@ -579,9 +589,7 @@ class Builder {
     floor_like_ = floor;
     const Look front = dice_.chance(0.7) ? walls : wall_look(dice_);
     enclose(depth, width, height, floor, front, walls);
-    Look ceiling;
-    ceiling.colours.fill({0.8F, 0.8F, 0.78F});
-    quad({-3, -width / 2, height}, {depth + 3, 0, 0}, {0, width, 0}, ceiling);
+    ceiling(depth, width, height);
 
     const float eye = is_clutter ? draw(dice_, 0.35, 1.4) : static_cast<float>(dice_.log_uniform(0.15, 1.6));
     const float down = is_clutter ? draw(dice_, 10, 50) : draw(dice_, -3, 12) + eye * draw(dice_, 8, 28);
@@ -723,11 +731,9 @@ class Builder {
     floor_like_ = floor;
     enclose(depth, side, height, floor, dice_.chance(0.5) ? walls : wall_look(dice_), walls);
     wall({-3, -side / 2, 0}, {0, side, 0}, height, walls, {1, 0});
-    Look ceiling;
-    ceiling.colours.fill({0.8F, 0.8F, 0.78F});
-    quad({-3, -side / 2, height}, {side, 0, 0}, {0, side, 0}, ceiling);
+    ceiling(depth, side, height);
 
-    const Place2 look = tour.path.at(static_cast<std::size_t>(tour.first_look - 1));
+    const PathPoint look = tour.path.at(static_cast<std::size_t>(tour.first_look - 1));
     const float eye = draw(dice_, 0.35, 1.1);
     camera({look.at.x, look.at.y, eye}, look.heading,
            std::atan2(eye, radius) * 180 / kPi + draw(dice_, -7, 1), draw(dice_, 0.6, 0.85),
@@ -739,11 +745,8 @@ class Builder {
       const float size = draw(dice_, 0.25, 0.8);
       Made made = thing(size, size < 0.5F);
       for (int t = 0; t < 2 * kTries; ++t) {
-        const auto corners = ground.corners();
         const float u = draw(dice_, 0, 1), v = draw(dice_, 0, 1);
-        const Vec2 at{corners[0].x + u * (corners[1].x - corners[0].x) + v * (corners[3].x - corners[0].x),
-                      corners[0].y + u * (corners[1].y - corners[0].y) + v * (corners[3].y - corners[0].y)};
-        if (put(made, at, draw(dice_, 0, 2 * kPi), 0, kTourGap, "free")) break;
+        if (put(made, ground.point(u, v), draw(dice_, 0, 2 * kPi), 0, kTourGap, "free")) break;
       }
     }
     sensor();
@@ -832,8 +835,7 @@ class Builder {
       return count;
     };
     for (int k = 0; k < 2 * kTries; ++k) {
-      const Standing& thing =
-          standing_[static_cast<std::size_t>(dice_.below(static_cast<int>(standing_.size())))];
+      const Standing& thing = dice_.pick(standing_);
       const int id = thing.id;
       if (std::ranges::find(tour.moves, id, &Move::id) != tour.moves.end()) continue;
       const auto there = another_place(thing, ground, 0.5F, 1.8F);

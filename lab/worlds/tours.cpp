@@ -3,13 +3,13 @@
 #include "lab/worlds/tours.hpp"
 
 #include <algorithm>
-#include <cairn/core/error.hpp>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "lab/worlds/dice.hpp"
+#include "lab/worlds/frames.hpp"
 #include "lab/worlds/shapes.hpp"
 
 namespace cairn::worlds {
@@ -37,15 +37,6 @@ void carry(World& world, const Move& move, float share) {
   centre = centre + Vec3{by.x, by.y, 0};
 }
 
-std::ofstream open(const std::filesystem::path& file) {
-  std::ofstream out(file);
-  out.precision(9);
-  return out;
-}
-void close(std::ofstream& out, const std::filesystem::path& file) {
-  if (!out.flush()) throw Error(file.string() + ": cannot be written");
-}
-
 }  // namespace
 
 World world_of(const Tour& tour, int frame) {
@@ -54,8 +45,8 @@ World world_of(const Tour& tour, int frame) {
     const int frames = move.last_frame - move.first_frame + 1;
     carry(world, move, std::clamp(fraction(frame - move.first_frame + 1, frames), 0.0F, 1.0F));
   }
-  const Place2 first = tour.path.at(static_cast<std::size_t>(tour.first_look - 1));
-  const Place2 now = tour.path.at(static_cast<std::size_t>(frame));
+  const PathPoint first = tour.path.at(static_cast<std::size_t>(tour.first_look - 1));
+  const PathPoint now = tour.path.at(static_cast<std::size_t>(frame));
   Dice dice = Dice(world.scene.seed).fork(static_cast<std::uint64_t>(frame));
   world.scene.seed = dice.bits();
   Rig& rig = world.scene.rig;
@@ -65,15 +56,14 @@ World world_of(const Tour& tour, int frame) {
   return world;
 }
 
-void write_tour_files(const Tour& tour, std::uint64_t seed, const std::filesystem::path& folder) {
-  const auto trajectory = folder / "trajectory.csv", odometry = folder / "odometry.csv",
-             events = folder / "events.json";
-  std::ofstream path = open(trajectory), wheels = open(odometry);
+void write_tour_files(const Tour& tour, const std::filesystem::path& folder) {
+  std::ostringstream path, wheels;
+  path.precision(9), wheels.precision(9);
   path << "frame,t_s,x_m,y_m,heading_rad\n";
   wheels << "frame,t_s,v_m_per_s,omega_rad_per_s\n";
-  Dice dice(seed);
+  Dice dice(tour.world.scene.seed);
   for (std::size_t i = 0; i < tour.path.size(); ++i) {
-    const Place2 now = tour.path[i], before = tour.path[i > 0 ? i - 1 : 0];
+    const PathPoint now = tour.path[i], before = tour.path[i > 0 ? i - 1 : 0];
     const double t = static_cast<double>(i) / kTourRateHz;
     path << i << ',' << t << ',' << now.at.x << ',' << now.at.y << ',' << now.heading << '\n';
     const double speed = kTourRateHz * std::hypot(now.at.x - before.at.x, now.at.y - before.at.y);
@@ -82,8 +72,8 @@ void write_tour_files(const Tour& tour, std::uint64_t seed, const std::filesyste
     wheels << i << ',' << t << ',' << speed * (1 + kWheelError * of_speed) << ','
            << turn * (1 + kWheelError * of_turn) + kTurnNoise * noise << '\n';
   }
-  close(path, trajectory);
-  close(wheels, odometry);
+  write_text(folder / "trajectory.csv", path.str());
+  write_text(folder / "odometry.csv", wheels.str());
   nlohmann::ordered_json list = nlohmann::json::array();
   for (const Move& move : tour.moves) {
     list.push_back({{"id", move.id},
@@ -94,11 +84,9 @@ void write_tour_files(const Tour& tour, std::uint64_t seed, const std::filesyste
                     {"to_xy", {move.to.x, move.to.y}},
                     {"turned_rad", move.turned}});
   }
-  std::ofstream out = open(events);
-  out << nlohmann::ordered_json{{"rate_hz", kTourRateHz}, {"frames", tour.path.size()}, {"events", list}}
-             .dump(1)
-      << "\n";
-  close(out, events);
+  const nlohmann::ordered_json events{
+      {"rate_hz", kTourRateHz}, {"frames", tour.path.size()}, {"events", list}};
+  write_text(folder / "events.json", events.dump(1) + "\n");
 }
 
 }  // namespace cairn::worlds

@@ -13,7 +13,7 @@ namespace cairn::worlds {
 inline constexpr int kTourRateHz = 5;
 
 /// Where the robot is in a frame: metres, radians from the x axis to the left.
-struct Place2 {
+struct PathPoint {
   Vec2 at;
   float heading = 0;
 };
@@ -33,7 +33,7 @@ struct Move {
 /// looks again from there. Meanwhile somebody carried one of them elsewhere, in most tours.
 struct Tour {
   World world;  // as it is at first, seen at the end of the first look
-  std::vector<Place2> path;
+  std::vector<PathPoint> path;
   int first_look = 0;  // frames
   std::vector<Move> moves;
 };
@@ -47,6 +47,6 @@ World world_of(const Tour& tour, int frame);
 
 /// Writes trajectory.csv, odometry.csv (as wheels with an error of 3 % and 0.5°/s would report it) and events.json, the
 /// truth of a sequence (docs/formats.md), next to the folders of the frames. Throws Error if it cannot.
-void write_tour_files(const Tour& tour, std::uint64_t seed, const std::filesystem::path& folder);
+void write_tour_files(const Tour& tour, const std::filesystem::path& folder);
 
 }  // namespace cairn::worlds

@@ -262,7 +262,7 @@ TEST(Tours, AreWrittenAsASequenceWithItsTruth) {
   ASSERT_FALSE(tour.moves.empty());
   for (int i = 0; i < 3; ++i)
     write_frame(make_frame(world_of(tour, i), 1), folder.path() / std::to_string(i));
-  write_tour_files(tour, 1, folder.path());
+  write_tour_files(tour, folder.path());
   const input::TrueSequence truth = input::load_truth(folder.path());
   ASSERT_EQ(truth.frames.size(), 3U);
   ASSERT_TRUE(truth.has_events);
