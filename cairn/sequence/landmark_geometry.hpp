@@ -18,61 +18,35 @@ using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-inline Matrix3 matrix(const Covariance3& rows) {
-  return Eigen::Map<const Matrix3>(rows.data());
-}
-inline Matrix4 matrix(const std::array<double, 16>& rows) {
-  return Eigen::Map<const Matrix4>(rows.data());
-}
-inline Matrix6 matrix(const Covariance6& rows) {
-  return Eigen::Map<const Matrix6>(rows.data());
-}
+// Functions of Eigen's are defined in one source: to compile them takes seconds in each.
+Matrix3 matrix(const Covariance3& rows);
+Matrix4 matrix(const std::array<double, 16>& rows);
+Matrix6 matrix(const Covariance6& rows);
 inline Eigen::Vector3d vector(Point3 p) {
   return {p.x, p.y, p.z};
 }
 inline Point3 point(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
-inline Covariance3 rows_of(const Matrix3& m) {
-  Covariance3 rows{};
-  Eigen::Map<Matrix3>(rows.data()) = m;
-  return rows;
-}
-inline std::array<double, 16> rows_of(const Matrix4& m) {
-  std::array<double, 16> rows{};
-  Eigen::Map<Matrix4>(rows.data()) = m;
-  return rows;
-}
+Covariance3 rows_of(const Matrix3& m);
+std::array<double, 16> rows_of(const Matrix4& m);
 
 /// The squared Mahalanobis distance.
-inline double squared_distance(const Eigen::Vector3d& difference, const Matrix3& covariance) {
-  return difference.dot(covariance.ldlt().solve(difference));
-}
+double squared_distance(const Eigen::Vector3d& difference, const Matrix3& covariance);
 
 /// A rotation about z by `yaw_rad`, then a translation.
 Pose turned(double yaw_rad, Point3 translation_m);
 
 /// Rows and columns of x, y, z and yaw in a Covariance6.
 inline constexpr std::array<Eigen::Index, 4> kPositionAndYaw{0, 1, 2, 5};
-inline Matrix4 position_and_yaw(const Covariance6& covariance) {
-  return matrix(covariance)(kPositionAndYaw, kPositionAndYaw);
-}
+Matrix4 position_and_yaw(const Covariance6& covariance);
 
-/// The symmetric matrix with eigenvalues below `least` raised to it.
+/// The symmetric matrix, a Matrix4 or Matrix6, with eigenvalues below `least` raised to it.
 template <class Matrix>
-Matrix with_clamped_eigenvalues(const Matrix& symmetric, double least) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> parts(symmetric);
-  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).asDiagonal() *
-         parts.eigenvectors().transpose();
-}
+Matrix with_clamped_eigenvalues(const Matrix& symmetric, double least);
 
 /// Covariance of a camera's x, y, z and yaw after it moved by `way_m`: the uncertainty of the heading shifts it.
-inline Matrix4 carried(const Matrix4& covariance, Point3 way_m) {
-  Matrix4 lever = Matrix4::Identity();
-  lever(0, 3) = -way_m.y;
-  lever(1, 3) = way_m.x;
-  return lever * covariance * lever.transpose();
-}
+Matrix4 carried(const Matrix4& covariance, Point3 way_m);
 
 /// A position in the map of something in the odometry frame: uncertain by itself and by the pose of that
 /// frame.
@@ -111,7 +85,7 @@ inline bool is_before(FloorCell a, FloorCell b) {
   return std::tie(a.x, a.y) < std::tie(b.x, b.y);
 }
 /// The frames in which the floor was seen there.
-int floor_frames_at(const LandmarkMap& map, FloorCell at);
+int floor_frames_at(const LandmarkMap& map, FloorCell wanted);
 
 /// Adds what was seen of the floor: different cells, by x, then y.
 void add_floor(LandmarkMap& map, const std::vector<FloorCell>& cells);
