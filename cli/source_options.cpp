@@ -57,8 +57,9 @@ void add_source_options(CLI::App& app, SourceInput& input) {
   app.add_option(
          "--topics", input.options.topics,
          "topics of a recording (default: found by type and name) or of ros2: (default: "
-         "left/image_rect,right/image_rect): left and right, or an image and its depth or disparities")
-      ->type_name("A,B");
+         "left/image_rect,right/image_rect): left and right, an image and its depth or disparities, or all "
+         "three, where the right image checks the depth")
+      ->type_name("A,B[,C]");
   add_map_options(app, input.options.maps);
   app.add_option("--rate", input.options.rate_hz,
                  "frames per second, overriding a video's and replacing missing stamps (default: of the "

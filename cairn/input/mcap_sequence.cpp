@@ -7,7 +7,6 @@
 #include <cairn/core/error.hpp>
 #include <cairn/io/frame_names.hpp>
 #include <cairn/io/raster.hpp>
-#include <deque>
 #include <iterator>
 #include <type_traits>
 
@@ -16,6 +15,7 @@
 #include <cairn/input/mcap_topics.hpp>
 #include <cairn/input/ros_depth.hpp>
 #include <cairn/input/ros_pictures.hpp>
+#include <cairn/input/stamped_images.hpp>
 #include <cairn/io/names_and_numbers.hpp>
 #include <cairn/ros/from_step.hpp>
 #include <cairn/ros/mcap.hpp>
@@ -30,6 +30,10 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMaxWaiting = 64;
 // … and the most bytes of all of them, beyond one each.
 constexpr std::size_t kMaxWaitingBytes = std::size_t{512} << 20;
+// The most images that accompany others and wait for them.
+constexpr std::size_t kMaxAccompanying = 16;
+// The most left images that are read while one waits for the right one that checks its depth.
+constexpr std::size_t kMaxAhead = 4;
 
 /// One camera's images.
 struct Side {
@@ -67,12 +71,17 @@ class McapSequence : public SourceSequence {
     sides_[0].channel = topics.left;
     sides_[1].channel = topics.right;
     has_depth_ = topics.has_depth || has_depth_by_encoding(topics);
+    if (topics.checked && !has_depth_) {
+      throw Error("--topics: " + topics.right.topic + " is no depth or disparity image of " +
+                  topics.left.topic);
+    }
     if (has_depth_ && options.rectify)
       throw Error("--rectify: " + topics.right.topic + " belongs to a rectified image");
     calibrate(topics);
     std::vector<std::uint16_t> wanted{topics.left.id, topics.right.id};
     if (topics.left_grey) wanted.push_back(*topics.left_grey);
-    grey_ = topics.left_grey;
+    if (topics.checked) wanted.push_back(topics.checked->id);
+    checked_ = topics.checked;
     reader_.rewind();
     reader_.only(wanted);
     first_ = McapSequence::advance();
@@ -146,9 +155,9 @@ class McapSequence : public SourceSequence {
       return;
     }
     const auto left = first_of<ros::CameraInfo>(topics.left_info);
-    if (has_depth_) {
+    if (has_depth_) image_info_ = left;
+    if (has_depth_ && !(topics.checked && topics.right_info)) {
       if (left) calibrate(*left);
-      image_info_ = left;
       return;
     }
     const auto right = first_of<ros::CameraInfo>(topics.right_info);
@@ -216,20 +225,25 @@ class McapSequence : public SourceSequence {
   /// Reads until the side has that many waiting; false at the end.
   bool has(std::size_t side, std::size_t count) {
     while (pairing_.waiting(side).size() < count) {
-      const auto message = reader_.next();
-      if (!message) return false;
-      if (message->channel == sides_[0].channel.id) {
-        take(0, *message);
-      } else if (message->channel == sides_[1].channel.id) {
-        take(1, *message);
-      } else {
-        take_grey(*message);
-      }
-      for (const std::size_t full : {std::size_t{0}, std::size_t{1}}) {
-        while (pairing_.waiting(full).size() > kMaxWaiting ||
-               (pairing_.waiting(full).size() > 1 && bytes_of(full) > kMaxWaitingBytes))
-          pairing_.leave(full);
-      }
+      if (!read_on()) return false;
+    }
+    return true;
+  }
+  /// Takes the next message; false at the end.
+  bool read_on() {
+    const auto message = reader_.next();
+    if (!message) return false;
+    if (message->channel == sides_[0].channel.id) {
+      take(0, *message);
+    } else if (message->channel == sides_[1].channel.id) {
+      take(1, *message);
+    } else {
+      take_accompanying(*message);
+    }
+    for (const std::size_t full : {std::size_t{0}, std::size_t{1}}) {
+      while (pairing_.waiting(full).size() > kMaxWaiting ||
+             (pairing_.waiting(full).size() > 1 && bytes_of(full) > kMaxWaitingBytes))
+        pairing_.leave(full);
     }
     return true;
   }
@@ -251,23 +265,28 @@ class McapSequence : public SourceSequence {
     try {
       if (side == 1 && has_depth_) {
         waiting.depth = depth_in(message, stamp, waiting.frame_id);
-      } else if (sides_[side].channel.type == ros::CompressedImage::kType) {
-        const auto image = ros::decode<ros::CompressedImage>(message.bytes);
-        stamp = stamp_of(image.header, message);
-        waiting.frame_id = ros::camera_of(image.header);
-        waiting.image = io::decode_raster(
-            {reinterpret_cast<const char*>(image.data.data()), image.data.size()}, io::Palette::colours);
       } else {
-        const auto image = ros::decode<ros::Image>(message.bytes);
-        stamp = stamp_of(image.header, message);
-        waiting.frame_id = ros::camera_of(image.header);
-        waiting.image = raster_of(image);
+        waiting.image = raster_in(message, sides_[side].channel, stamp, waiting.frame_id);
       }
     } catch (const Error& error) {
       waiting.trouble = error.what();
     }
     if (!first_stamps_[side]) first_stamps_[side] = stamp;
     pairing_.push(side, stamp, std::move(waiting));
+  }
+  static io::Raster raster_in(const ros::McapMessage& message, const ros::McapChannel& channel, Stamp& stamp,
+                              std::string& frame_id) {
+    if (channel.type == ros::CompressedImage::kType) {
+      const auto image = ros::decode<ros::CompressedImage>(message.bytes);
+      stamp = stamp_of(image.header, message);
+      frame_id = ros::camera_of(image.header);
+      return io::decode_raster({reinterpret_cast<const char*>(image.data.data()), image.data.size()},
+                               io::Palette::colours);
+    }
+    const auto image = ros::decode<ros::Image>(message.bytes);
+    stamp = stamp_of(image.header, message);
+    frame_id = ros::camera_of(image.header);
+    return raster_of(image);
   }
   RosDepth depth_in(const ros::McapMessage& message, Stamp& stamp, std::string& frame_id) {
     const auto decoded = [&]<class M>(std::type_identity<M>) {
@@ -281,17 +300,14 @@ class McapSequence : public SourceSequence {
     if (type == ros::CompressedImage::kType) return decoded(std::type_identity<ros::CompressedImage>{});
     return decoded(std::type_identity<ros::Image>{});
   }
-  void take_grey(const ros::McapMessage& message) {
+  void take_accompanying(const ros::McapMessage& message) {
     try {
-      const auto image = ros::decode<ros::Image>(message.bytes);
-      greys_.emplace_back(stamp_of(image.header, message), raster_of(image));
-      std::size_t bytes = 0;
-      for (const auto& [stamp, grey] : greys_) bytes += grey.bytes.size();
-      while (greys_.size() > kMaxWaiting || (greys_.size() > 1 && bytes > kMaxWaitingBytes)) {
-        bytes -= greys_.front().second.bytes.size();
-        greys_.pop_front();
-      }
-    } catch (const Error&) {  // colour contains grey, up to rounding
+      Stamp stamp;
+      std::string unused;
+      const bool is_right = checked_ && message.channel == checked_->id;
+      io::Raster image = raster_in(message, is_right ? *checked_ : ros::McapChannel(), stamp, unused);
+      (is_right ? rights_ : greys_).push(stamp, std::move(image));
+    } catch (const Error&) {  // colour contains grey, up to rounding; a frame without its right image says so
     }
   }
   static Stamp stamp_of(const ros::Header& header, const ros::McapMessage& message) {
@@ -334,20 +350,24 @@ class McapSequence : public SourceSequence {
       SequenceFrame frame{name, index, stamp, {}, {}};
       frame.frame_id = left.frame_id;
       try {
-        io::LoadedPair pair =
-            io::pair_of(*left.image, right.depth ? *left.image : *right.image, pool_, bits_);
+        const std::optional<io::Raster> checking = right_at(both.left.stamp, name);
+        const bool has_right = !right.depth || checking;
+        const io::Raster& other = checking ? *checking : right.depth ? *left.image : *right.image;
+        io::LoadedPair pair = io::pair_of(*left.image, other, pool_, bits_);
         bits_ = pair.bits;
-        if (std::optional<io::Raster> grey = grey_at(both.left.stamp, pair.left.gray.size()))
+        const std::optional<io::Raster> grey = greys_.take(both.left.stamp);
+        if (grey && grey->size == pair.left.gray.size())
           pair.left.gray = std::move(io::pair_of(*grey, *grey, pool_).left.gray);
         pair = calibration_.rectified(std::move(pair), pool_);
         frame.left = std::move(pair.left);
-        if (!right.depth) frame.right = std::move(pair.right.gray);
+        if (has_right) frame.right = std::move(pair.right.gray);
       } catch (const Error& error) {
         throw Error(file_.string() + ": frame " + name + ": " + error.what());
       }
       if (watch_.image_size().area() == 0) {
         calibration_.suit(frame.left.gray.size());
         if (right.depth) {
+          if (checked_) check_baseline(calibration_.says, *right.depth, file_.string());
           complete(calibration_.says, *right.depth);
           std::ranges::move(
               remarks_on({sides_[0].channel.topic, left.frame_id, sides_[1].channel.topic, right.frame_id},
@@ -370,11 +390,14 @@ class McapSequence : public SourceSequence {
     end();
     return std::nullopt;
   }
-  std::optional<io::Raster> grey_at(Stamp stamp, Size size) {
-    while (!greys_.empty() && greys_.front().first < stamp) greys_.pop_front();
-    if (greys_.empty() || greys_.front().first != stamp || greys_.front().second.size != size)
-      return std::nullopt;
-    return greys_.front().second;
+  /// The right image that checks the depth of a frame.
+  std::optional<io::Raster> right_at(Stamp stamp, const std::string& frame) {
+    if (!checked_) return std::nullopt;
+    while (!rights_.reaches(stamp) && pairing_.waiting(0).size() < kMaxAhead && read_on()) {
+    }
+    std::optional<io::Raster> right = rights_.take(stamp);
+    if (!right) remark(remarks_, {kUnchecked, 1, frame, false, false});
+    return right;
   }
   void end() {
     if (is_ended_) return;
@@ -398,10 +421,11 @@ class McapSequence : public SourceSequence {
   std::array<Side, 2> sides_;
   Pairing pairing_;
   std::array<std::optional<Stamp>, 2> first_stamps_;
-  std::optional<std::uint16_t> grey_;
+  std::optional<ros::McapChannel> checked_;  // the right images that check depths
   bool has_depth_ = false;
   std::optional<ros::CameraInfo> image_info_;  // of an image with depth
-  std::deque<std::pair<Stamp, io::Raster>> greys_;
+  StampedImages<io::Raster> greys_{0, kMaxAccompanying};
+  StampedImages<io::Raster> rights_{options_.max_skew_ms, kMaxAccompanying};
   std::size_t pairs_ = 0;
   int bits_ = 8;
   bool is_past_range_ = false;

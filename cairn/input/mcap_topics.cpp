@@ -146,21 +146,40 @@ std::vector<std::pair<const McapChannel*, const McapChannel*>> with_depth(const 
 
 }  // namespace
 
+std::vector<std::string> split_topics(const std::string& topics) {
+  std::vector<std::string> names(1);
+  for (const char c : topics) {
+    if (c == ',') {
+      names.emplace_back();
+    } else {
+      names.back() += c;
+    }
+  }
+  if (names.size() < 2 || names.size() > 3 || std::ranges::any_of(names, &std::string::empty))
+    throw Error("--topics: found " + topics + ", expected LEFT,RIGHT, IMAGE,DEPTH or LEFT,RIGHT,DEPTH");
+  return names;
+}
+
 StereoTopics find_stereo_topics(const Channels& channels, const std::string& wanted,
                                 const std::string& file) {
   const std::string all = image_topics(channels);
   const std::string there = all.empty() ? "it has no image topic in CDR" : "its images: " + all;
   if (!wanted.empty()) {
-    const std::size_t comma = wanted.find(',');
-    if (comma == std::string::npos) throw Error("--topics: found " + wanted + ", expected LEFT,RIGHT");
-    std::array<const McapChannel*, 2> sides{};
-    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
-      const std::string topic = i == 0 ? wanted.substr(0, comma) : wanted.substr(comma + 1);
-      sides.at(i) = find(channels, topic);
-      if (sides.at(i) == nullptr || !(is_image(*sides.at(i)) || (i == 1 && is_disparity(*sides.at(i)))))
-        throw Error("--topics: " + file + " has no image topic " + topic + "; " + there);
+    const std::vector<std::string> names = split_topics(wanted);
+    std::vector<const McapChannel*> images;
+    for (const std::string& name : names) {
+      images.push_back(find(channels, name));
+      const bool may_be_disparity = images.size() == names.size();
+      if (images.back() == nullptr ||
+          !(is_image(*images.back()) || (may_be_disparity && is_disparity(*images.back()))))
+        throw Error("--topics: " + file + " has no image topic " + name + "; " + there);
     }
-    return with_companions(channels, *sides[0], *sides[1]);
+    StereoTopics topics = with_companions(channels, *images.front(), *images.back());
+    if (images.size() == 3) {
+      topics.checked = *images[1];
+      topics.right_info = info_of(channels, *images[1]);
+    }
+    return topics;
   }
   std::vector<std::pair<const McapChannel*, const McapChannel*>> best;
   for (const auto& [id, left] : channels) {

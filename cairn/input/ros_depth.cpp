@@ -157,6 +157,13 @@ void complete(io::Calibration& calibration, const RosDepth& first) {
   }
 }
 
+void check_baseline(const io::Calibration& calibration, const RosDepth& first, const std::string& source) {
+  if (calibration.rig || first.of_message) return;
+  throw Error(source +
+              ": has no baseline, which depth checked by a right image needs: expected camera_info of both "
+              "cameras, or --calib FILE");
+}
+
 Image<float> disparity_of(const RosDepth& depth, Size image, const std::optional<StereoRig>& rig,
                           const Pool& pool) {
   if (depth.values.size() != image) {

@@ -56,6 +56,10 @@ std::vector<SourceRemark> remarks_on(const DepthNames& names, const ros::CameraI
 /// Completes the calibration for these messages: what a DisparityImage says of its cameras; or an assumed baseline for
 /// depths. No change without a focal length and centre.
 void complete(io::Calibration& calibration, const RosDepth& first);
+/// A right image can check depths in m only if the baseline is known. Throws Error, with the source's name.
+void check_baseline(const io::Calibration& calibration, const RosDepth& first, const std::string& source);
+/// The remark on a frame without that right image.
+inline constexpr const char* kUnchecked = "depth without the right image that checks it";
 /// The disparities of an image of this size. Throws Error if the size differs, and for depths without a rig.
 Image<float> disparity_of(const RosDepth& depth, Size image, const std::optional<StereoRig>& rig,
                           const Pool& pool);

@@ -80,7 +80,8 @@ struct SourceOptions {
   FrameRange frames;
   double max_gap_s = 1.0;
   double max_skew_ms = 5;  // between the stamps of left and right, if each side has its own
-  // Of a recording and of ROS 2: "LEFT,RIGHT" or "IMAGE,DEPTH"; empty: found by type and name, or left/image_rect and right/image_rect.
+  // Of a recording and of ROS 2: "LEFT,RIGHT", "IMAGE,DEPTH" or "LEFT,RIGHT,DEPTH", whose right image checks the depth;
+  // empty: found by type and name, or left/image_rect and right/image_rect.
   std::string topics;
   io::MapOptions maps;             // of folders: used instead of matching
   bool rectify = false;            // the images are raw and are rectified by the calibration; always for

@@ -117,6 +117,44 @@ TEST_F(Given, DepthIsFollowedRecordedAndBatched) {
   EXPECT_EQ(tuned.code, 2);
 }
 
+TEST_F(Given, TheRightImagesOfARecordingCheckItsDepth) {
+  const auto record = [&](const std::string& name, float factor) {
+    CameraFile camera(at(name));
+    const auto left = camera.topic<ros::Image>("/left/image_rect");
+    const auto right = camera.topic<ros::Image>("/right/image_rect");
+    const auto depth = camera.topic<ros::Image>("/left/depth");
+    const auto left_info = camera.topic<ros::CameraInfo>("/left/camera_info");
+    const auto right_info = camera.topic<ros::CameraInfo>("/right/camera_info");
+    const io::LoadedPair pair = io::load_pair(kSample / "left.png", kSample / "right.png");
+    const Image<std::uint16_t> millimetres = depth_mm();
+    Image<float> metres(millimetres.size());
+    for (int y = 0; y < metres.height(); ++y) {
+      for (int x = 0; x < metres.width(); ++x)
+        metres(x, y) = 1e-3F * factor * static_cast<float>(millimetres(x, y));
+    }
+    for (int i = 0; i < 3; ++i) {
+      const Stamp stamp{i * 100'000'000LL};
+      const ros::Header header = messages::header(stamp, "left_optical");
+      camera.add(left, stamp, ros::image_of(header, pair.left.gray.view()));
+      camera.add(right, stamp, ros::image_of(header, pair.right.gray.view()));
+      camera.add(depth, stamp, ros::image_of(header, View<const float>(metres)));
+      camera.add(left_info, stamp, ros::camera_info_of(header, rig(), metres.size(), ros::Side::left));
+      camera.add(right_info, stamp, ros::camera_info_of(header, rig(), metres.size(), ros::Side::right));
+    }
+  };
+  record("right.mcap", 1);
+  record("wrong.mcap", 1.5F);
+  const auto findings = [&](const std::string& name, const std::string& topics) {
+    const Outcome outcome = run({"follow", path(name), "--topics", topics, "-o", path(name + ".out")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.err.find("no disparity of these images") != std::string::npos;
+  };
+  const std::string three = "/left/image_rect,/right/image_rect,/left/depth";
+  EXPECT_FALSE(findings("right.mcap", three));
+  EXPECT_TRUE(findings("wrong.mcap", three));
+  EXPECT_FALSE(findings("wrong.mcap", "/left/image_rect,/left/depth")) << "nothing there to check it";
+}
+
 TEST_F(Given, ARecordingGivesTheSameTracks) {
   rgbd(3);
   {

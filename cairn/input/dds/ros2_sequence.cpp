@@ -14,8 +14,10 @@
 
 #include <cairn/input/frame_list.hpp>
 #include <cairn/input/frame_watch.hpp>
+#include <cairn/input/mcap_topics.hpp>
 #include <cairn/input/ros_depth.hpp>
 #include <cairn/input/ros_pictures.hpp>
+#include <cairn/input/stamped_images.hpp>
 #include <cairn/io/names_and_numbers.hpp>
 #include <cairn/ros/dds/participant.hpp>
 #include <cairn/ros/from_step.hpp>
@@ -52,10 +54,11 @@ class Ros2Sequence : public SourceSequence {
         topics_(topics_of(options)),
         left_(participant_, topics_[0]),
         right_(second_reader(participant_, topics_[1], options.topics)),
-        infos_{ros::Reader<ros::CameraInfo>(participant_, info_topic(0)),
-               ros::Reader<ros::CameraInfo>(participant_, info_topic(1))},
+        infos_{ros::Reader<ros::CameraInfo>(participant_, info_topic(topics_[0])),
+               ros::Reader<ros::CameraInfo>(participant_, info_topic(topics_.back()))},
         wait_(participant_, {&left_, &reader(1)}),
         pairing_(options.max_skew_ms, [this](std::size_t, auto&&) { ++unpaired_; }) {
+    if (is_checked()) rights_reader_.emplace(participant_, topics_[2]);
     calibration_ = open_calibration(options, std::nullopt, false, false);
     first_ = opened();
   }
@@ -107,28 +110,27 @@ class Ros2Sequence : public SourceSequence {
     const std::string name = source.substr(kPrefix.size());
     return name.empty() || name == "/" ? "" : ros::checked_name(name, "SOURCE " + source);
   }
-  [[nodiscard]] std::array<std::string, 2> topics_of(const SourceOptions& options) const {
+  /// The left images, the second ones, and the right images if these check depths of the second.
+  [[nodiscard]] std::vector<std::string> topics_of(const SourceOptions& options) const {
     const auto of_side = [&](const char* side) {
       return prefix_ + "/" + side + (options.rectify ? "/image_raw" : "/image_rect");
     };
     if (options.topics.empty()) return {of_side("left"), of_side("right")};
-    const std::size_t comma = options.topics.find(',');
-    if (comma == std::string::npos)
-      throw Error("--topics: found " + options.topics + ", expected LEFT,RIGHT or IMAGE,DEPTH");
+    std::vector<std::string> topics;
     // Below the name of the source, unless they begin with a slash.
-    const auto whole = [&](const std::string& name) {
-      return ros::checked_name(name.starts_with('/') ? name : prefix_ + "/" + name, "--topics");
-    };
-    return {whole(options.topics.substr(0, comma)), whole(options.topics.substr(comma + 1))};
+    for (const std::string& name : split_topics(options.topics))
+      topics.push_back(ros::checked_name(name.starts_with('/') ? name : prefix_ + "/" + name, "--topics"));
+    if (topics.size() == 3) std::swap(topics[1], topics[2]);
+    return topics;
   }
-  [[nodiscard]] std::string info_topic(std::size_t side) const {
-    return topics_[side].substr(0, topics_[side].rfind('/')) + "/camera_info";
+  static std::string info_topic(const std::string& image) {
+    return image.substr(0, image.rfind('/')) + "/camera_info";
   }
+  [[nodiscard]] bool is_checked() const { return topics_.size() == 3; }
   /// DDS has to know the type before the first message.
   static SecondReader second_reader(const ros::Participant& participant, const std::string& topic,
                                     const std::string& named) {
-    const std::size_t comma = std::min(named.find(','), named.size());
-    if (named.find("disparity", comma) != std::string::npos)
+    if (named.find("disparity", std::min(named.rfind(','), named.size())) != std::string::npos)
       return ros::Reader<ros::DisparityImage>(participant, topic);
     return ros::Reader<ros::Image>(participant, topic);
   }
@@ -174,6 +176,7 @@ class Ros2Sequence : public SourceSequence {
   std::optional<Pair> taken() {
     while (true) {
       bool is_idle = true;
+      take_rights();
       for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
         try {
           auto image = take(side);
@@ -195,11 +198,22 @@ class Ros2Sequence : public SourceSequence {
     }
   }
 
+  void take_rights() {
+    if (!rights_reader_) return;
+    try {
+      while (std::optional<ros::Image> right = rights_reader_->take()) {
+        const Stamp stamp = ros::stamp_of(right->header.stamp);
+        rights_.push(stamp, std::move(*right));
+      }
+    } catch (const Error&) {  // the frame says that it has none
+    }
+  }
+
   /// Reads the cameras' parameters that have arrived; true if those of both, or of an image with depth, are known.
   bool take_infos(const std::optional<Pair>& pair) {
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
       while (std::optional<ros::CameraInfo> info = infos_[side].take()) last_infos_[side] = std::move(info);
-    return last_infos_[0] && (last_infos_[1] || (pair && has_depth(*pair)));
+    return last_infos_[0] && (last_infos_[1] || (!is_checked() && pair && has_depth(*pair)));
   }
 
   /// The first frame. Throws Error.
@@ -252,6 +266,8 @@ class Ros2Sequence : public SourceSequence {
   void calibrate(const Pair& pair, bool needs_infos) {
     const Size size{static_cast<int>(pair.left.value.image().width),
                     static_cast<int>(pair.left.value.image().height)};
+    if (is_checked() && !has_depth(pair))
+      throw Error("--topics: " + topics_[1] + " is no depth or disparity image of " + topics_[0]);
     if (has_depth(pair)) {
       if (options_.rectify) throw Error("--rectify: " + topics_[1] + " belongs to a rectified image");
       calibrate_depth(pair, size, needs_infos);
@@ -266,6 +282,8 @@ class Ros2Sequence : public SourceSequence {
   void calibrate_depth(const Pair& pair, Size size, bool needs_infos) {
     if (!needs_infos) {
       calibration_.suit(size);
+    } else if (is_checked() && last_infos_[0] && last_infos_[1]) {
+      calibration_.says.rig = rig_of_infos(size);
     } else if (last_infos_[0]) {
       try {
         set_camera(calibration_.says, *last_infos_[0], topics_[0], size);
@@ -275,7 +293,9 @@ class Ros2Sequence : public SourceSequence {
     } else {
       remark_without(0);
     }
-    complete(calibration_.says, depth_of(pair));
+    const RosDepth depth = depth_of(pair);
+    if (is_checked()) check_baseline(calibration_.says, depth, source_);
+    complete(calibration_.says, depth);
     const auto header_of = [](const auto& message) -> const ros::Header& { return message.header; };
     std::ranges::move(remarks_on({topics_[0], pair.left.value.image().header.frame_id, topics_[1],
                                   std::visit(header_of, pair.right.value.message).frame_id},
@@ -283,7 +303,8 @@ class Ros2Sequence : public SourceSequence {
                       std::back_inserter(remarks_));
   }
   void remark_without(std::size_t info) {
-    remarks_.push_back({"received nothing on " + info_topic(info) + ": no metres (--calib FILE instead)", 0,
+    const std::string& image = info == 0 ? topics_.front() : topics_.back();
+    remarks_.push_back({"received nothing on " + info_topic(image) + ": no metres (--calib FILE instead)", 0,
                         "", false, false});
   }
   [[nodiscard]] RosDepth depth_of(const Pair& pair) const {
@@ -312,8 +333,12 @@ class Ros2Sequence : public SourceSequence {
     if (!options_.frames.contains(index)) return std::nullopt;
     const bool is_depth = has_depth(pair);
     const ros::Image& left = pair.left.value.image();
-    io::LoadedPair images = pictures_of(left, topics_[0], is_depth ? left : pair.right.value.image(),
-                                        topics_[is_depth ? 0 : 1], bits_, pool_);
+    const std::optional<ros::Image> checking = is_checked() ? rights_.take(stamp) : std::nullopt;
+    if (is_checked() && !checking) remark(remarks_, {kUnchecked, 1, io::number_text(index), false, false});
+    const bool has_right = !is_depth || checking;
+    const ros::Image& other = checking ? *checking : is_depth ? left : pair.right.value.image();
+    io::LoadedPair images =
+        pictures_of(left, topics_[0], other, has_right ? topics_.back() : topics_[0], bits_, pool_);
     bits_ = images.bits;
     images = calibration_.rectified(std::move(images), pool_);
     SequenceFrame frame{
@@ -321,7 +346,7 @@ class Ros2Sequence : public SourceSequence {
         index,
         stamp,
         std::move(images.left),
-        is_depth ? Image<Gray>() : std::move(images.right.gray),
+        has_right ? std::move(images.right.gray) : Image<Gray>(),
         false,
         std::max(pair.left.value.arrived, pair.right.value.arrived),
         ros::camera_of(header),
@@ -358,10 +383,12 @@ class Ros2Sequence : public SourceSequence {
   std::string prefix_;
   SourceOptions options_;
   Pool pool_;
-  std::array<std::string, 2> topics_;
+  std::vector<std::string> topics_;
   ros::Participant participant_;
   ros::Reader<ros::Image> left_;
   SecondReader right_;
+  std::optional<ros::Reader<ros::Image>> rights_reader_;
+  StampedImages<ros::Image> rights_{options_.max_skew_ms, kMaxWaiting};
   std::array<ros::Reader<ros::CameraInfo>, 2> infos_;
   ros::ReaderWait wait_;
   Pairing pairing_;

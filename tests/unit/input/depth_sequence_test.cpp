@@ -315,6 +315,89 @@ TEST_F(DepthRecording, ADisparityImageKnowsItsRig) {
   expect_depths(frame->disparity_px, sequence->rig());
 }
 
+/// A camera with a right image that checks the depth: three frames, the right images as told.
+class CheckedRecording : public DepthRecording {
+ protected:
+  static constexpr std::int64_t kPeriod_ns = 100'000'000;
+  static Image<Gray> right_image(int frame) {
+    return recordings::dots(kSize, 100 + static_cast<unsigned>(frame));
+  }
+  void record_three(bool has_right_info, const std::vector<int>& right_frames) const {
+    CameraFile camera(file());
+    const auto left = camera.topic<ros::Image>("/left/image_rect");
+    const auto right = camera.topic<ros::Image>("/right/image_rect");
+    const auto depth = camera.topic<ros::Image>("/left/depth");
+    const StereoRig rig{20, 12, 8, 0.07F, 0};
+    for (int i = 0; i < 3; ++i) {
+      const Stamp stamp{kStamp.ns + i * kPeriod_ns};
+      const ros::Header header = ros::header_of(stamp, "camera");
+      const Image<Gray> picture = recordings::dots(kSize, 1 + static_cast<unsigned>(i));
+      camera.add(left, stamp, ros::image_of(header, picture.view()));
+      ros::Image message = depth_16();
+      message.header = header;
+      camera.add(depth, stamp, message);
+      camera.add(camera.topic<ros::CameraInfo>("/left/camera_info"), stamp,
+                 ros::camera_info_of(header, rig, kSize, ros::Side::left));
+      if (has_right_info) {
+        camera.add(camera.topic<ros::CameraInfo>("/right/camera_info"), stamp,
+                   ros::camera_info_of(header, rig, kSize, ros::Side::right));
+      }
+      // Later than its depth, as a recorder may write it.
+      if (std::ranges::count(right_frames, i) == 0) continue;
+      const Image<Gray> other = right_image(i);
+      camera.add(right, stamp, ros::image_of(ros::header_of({stamp.ns + 2'000'000}, "right"), other.view()));
+    }
+  }
+  [[nodiscard]] SourceOptions three() const {
+    SourceOptions options;
+    options.topics = "/left/image_rect,/right/image_rect,/left/depth";
+    return options;
+  }
+};
+
+TEST_F(CheckedRecording, HasTheRightImageOfEachFrameAndTheBaseline) {
+  record_three(true, {0, 1, 2});
+  const auto frames = frames_of(file().string(), three());
+  ASSERT_EQ(frames.size(), 3U);
+  for (int i = 0; i < 3; ++i) {
+    const auto& frame = frames[static_cast<std::size_t>(i)];
+    expect_depths(frame.disparity_px, StereoRig{20, 12, 8, 0.07F, 0});
+    ASSERT_EQ(frame.right.size(), kSize);
+    const Image<Gray> expected = right_image(i);
+    for (int y = 0; y < kSize.height; ++y)
+      EXPECT_TRUE(std::equal(expected.row(y), expected.row(y) + kSize.width, frame.right.row(y)))
+          << i << " " << y;
+  }
+}
+
+TEST_F(CheckedRecording, AFrameWithoutItsRightImageSaysSo) {
+  record_three(true, {0, 2});
+  const auto sequence = open_sequence(file().string(), three());
+  std::vector<bool> has_right;
+  while (const auto frame = sequence->next()) has_right.push_back(!frame->right.empty());
+  EXPECT_EQ(has_right, (std::vector<bool>{true, false, true}));
+  const auto remarks = sequence->remarks();
+  const auto said = std::ranges::find(remarks, std::string(kUnchecked), &SourceRemark::what);
+  ASSERT_NE(said, remarks.end());
+  EXPECT_EQ(said->count, 1U);
+  EXPECT_EQ(said->first, "000001");
+}
+
+TEST_F(CheckedRecording, RefusesWhatCannotBeChecked) {
+  record_three(false, {0, 1, 2});
+  EXPECT_TRUE(has(refusal([&] { frames_of(file().string(), three()); }),
+                  {"has no baseline", "camera_info of both cameras, or --calib FILE"}));
+  SourceOptions options = three();
+  options.topics = "/left/image_rect,/left/depth,/right/image_rect";
+  EXPECT_TRUE(has(refusal([&] { frames_of(file().string(), options); }),
+                  {"--topics: /right/image_rect is no depth or disparity image of /left/image_rect"}));
+  for (const char* topics : {"/left/image_rect", "a,b,c,d", "a,,c"}) {
+    options.topics = topics;
+    EXPECT_TRUE(has(refusal([&] { frames_of(file().string(), options); }),
+                    {topics, "expected LEFT,RIGHT, IMAGE,DEPTH or LEFT,RIGHT,DEPTH"}));
+  }
+}
+
 TEST_F(DepthRecording, DepthOfAnotherSizeIsRefused) {
   record("/camera/color/image_raw", "", [](CameraFile& camera) {
     ros::Image message = depth_16();

@@ -785,12 +785,14 @@ TEST_F(Dds, ASourceDeliversPairsUnchanged) {
 
 // ---- depth and other sensors ----
 
-/// Publishes an image with its depth, or with its disparities, at 20 Hz.
+/// Publishes an image with its depth, or with its disparities, and the right image, at 20 Hz.
 class DepthCamera {
  public:
   DepthCamera(const std::string& prefix, bool is_disparity)
       : image_(participant_, prefix + "/color/image_raw"),
-        info_(participant_, prefix + "/color/camera_info") {
+        info_(participant_, prefix + "/color/camera_info"),
+        right_(participant_, prefix + "/right/image_rect"),
+        right_info_(participant_, prefix + "/right/camera_info") {
     if (is_disparity) {
       disparity_.emplace(participant_, prefix + "/disparity");
     } else {
@@ -818,6 +820,8 @@ class DepthCamera {
     for (std::int64_t i = 1; !is_over_; ++i) {
       const Header header = header_of({i * 50'000'000}, "color_optical");
       info_.write(camera_info_of(header, camera, pair.right.size(), Side::left));
+      right_info_.write(camera_info_of(header, camera, pair.right.size(), Side::right));
+      right_.write(image_of(header, pair.right.view()));
       if (depth_) depth_->write(image_of(header, depth_m.view()));
       if (disparity_) {
         disparity_->write(disparity_image_of(header, live_frame()->step.frame, camera,
@@ -831,6 +835,8 @@ class DepthCamera {
   Participant participant_;
   Writer<Image> image_;
   Writer<CameraInfo> info_;
+  Writer<Image> right_;
+  Writer<CameraInfo> right_info_;
   std::optional<Writer<Image>> depth_;
   std::optional<Writer<DisparityImage>> disparity_;
   std::atomic<bool> is_over_ = false;
@@ -865,6 +871,25 @@ TEST_F(Dds, ADepthImageOrDisparitiesTakeThePlaceOfTheRightImage) {
       }
     }
     EXPECT_GT(known, 10'000);
+  }
+}
+
+TEST_F(Dds, ARightImageMayCheckDepth) {
+  for (const bool is_disparity : {false, true}) {
+    const std::string prefix = own_topic(is_disparity ? "checked_disparity" : "checked_depth");
+    const DepthCamera camera(prefix, is_disparity);
+    input::SourceOptions options;
+    options.topics =
+        std::string("color/image_raw,right/image_rect,") + (is_disparity ? "disparity" : "depth/image");
+    const auto source = input::ros2_sequence("ros2:" + prefix, options, {});
+    ASSERT_TRUE(source->rig());
+    EXPECT_NEAR(source->rig()->baseline_m, rig().baseline_m, 1e-6);
+    // The first one may have been joined after its right image was sent.
+    (void)source->next();
+    const auto frame = source->next();
+    ASSERT_TRUE(frame);
+    EXPECT_TRUE(equal(frame->right, live_frame()->pair->right));
+    EXPECT_EQ(frame->disparity_px.size(), frame->right.size());
   }
 }
 
