@@ -65,6 +65,7 @@ fi
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 for preset in default paper; do counts "$preset"; done >"$scratch/now"
+[[ -s $scratch/now ]] || { echo "instruction_counts: found no function of the stages, expected a build with -g1" >&2; exit 1; }
 
 if [[ $mode == --update ]]; then
   {
