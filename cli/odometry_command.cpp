@@ -6,6 +6,7 @@
 #include <cairn/input/camera/without_password.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/live/runner.hpp>
+#include <cairn/live/sensors.hpp>
 #include <cairn/output/trajectory_files.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/sequence/first_pose.hpp>
@@ -42,17 +43,12 @@ FollowConfig resolve_odometry(const OdometryOptions& options, const input::Seque
   return config;
 }
 
-std::unique_ptr<input::MotionPriors> load_priors(const OdometryOptions& options,
-                                                 const input::Sequence& source) {
+live::Sensors open_sensors(const OdometryOptions& options, const input::Sequence& source) {
   refuse_two_priors(options.wheels, options.imu);
-  const auto named = [](const std::string& file) {
-    return file.empty() ? std::nullopt : std::optional<std::filesystem::path>(file);
-  };
-  std::vector<std::string> assumptions;
-  auto priors = live::open_priors(named(options.wheels), named(options.imu), options.input.source, source,
-                                  &assumptions);
-  for (const std::string& assumed : assumptions) std::cerr << "cairn: " << assumed << "\n";
-  return priors;
+  live::SensorFiles files;
+  if (!options.wheels.empty()) files.odometry = options.wheels;
+  if (!options.imu.empty()) files.imu = options.imu;
+  return {files, options.input.source, source};
 }
 
 /// Totals of the frames, for the last line.
@@ -83,8 +79,8 @@ bool add(Run& run, const TrackedFrame& step, bool keep_lost) {
 /// The camera's motion without objects.
 class CameraMotion {
  public:
-  CameraMotion(const StereoRig& rig, const input::MotionPriors* priors, Run& run)
-      : rig_(rig), priors_(priors), run_(run) {}
+  CameraMotion(const StereoRig& rig, const live::Sensors& sensors, Run& run)
+      : rig_(rig), sensors_(sensors), run_(run) {}
 
   TrackedFrame next(const input::SequenceFrame& frame, const FollowConfig& config, const Exec& exec) {
     FrameInput in{{frame.left.gray, frame.left.rgb}, frame.right};
@@ -98,7 +94,7 @@ class CameraMotion {
       state_ = begin_odometry(first);
     }
     std::optional<MotionPrior> prior;
-    if (priors_ != nullptr && before_) prior = priors_->between(*before_, frame.stamp, from_level_);
+    if (before_) prior = sensors_.between(*before_, frame.stamp, from_level_);
     if (prior) ++run_.with_prior;
     if (before_ && frame.after_gap) state_ = after_gap(std::move(state_));
     OdometryStep moved = advance_odometry(state_, {frame.left.gray, scene.disparity, scene.confidence, {}},
@@ -117,7 +113,7 @@ class CameraMotion {
 
  private:
   std::optional<StereoRig> rig_;  // always known
-  const input::MotionPriors* priors_;
+  const live::Sensors& sensors_;
   Run& run_;
   OdometryState state_;
   Pose from_level_;
@@ -149,7 +145,7 @@ class Poses : public live::Sink {
   Progress progress_;
 };
 
-std::string summary(const Run& run, const input::MotionPriors* priors) {
+std::string summary(const Run& run, const live::Sensors& sensors) {
   std::string all = std::to_string(run.frames) + (run.frames == 1 ? " frame, " : " frames, ") +
                     text_of("%.2f m", run.path_m) + " of path, " + std::to_string(run.keyframes) +
                     (run.keyframes == 1 ? " keyframe" : " keyframes");
@@ -159,8 +155,9 @@ std::string summary(const Run& run, const input::MotionPriors* priors) {
     all += ", " + text_of("%.1f ms", sorted[sorted.size() / 2]) + " per frame without matching";
   }
   all += "\n";
-  if (priors != nullptr)
-    all += "prior: " + priors->description() + ", used for " + std::to_string(run.with_prior) + " frames\n";
+  if (!sensors.description().empty())
+    all += "prior: " + sensors.description() + ", used for " + std::to_string(run.with_prior) + " frames\n";
+  for (const std::string& assumed : sensors.assumptions()) all += "cairn: " + assumed + "\n";
   for (const auto& [reason, count] : run.refusals)
     all += "refused: " + std::to_string(count) + " " + reason + "\n";
   if (run.lost > 0) all += "lost: " + std::to_string(run.lost) + " frames, pose unknown\n";
@@ -183,9 +180,9 @@ int estimate(const OdometryOptions& options) {
     throw Error(input::without_password(options.input.source) +
                 ": has no calibration, expected --calib (poses are in metres)");
   }
-  const std::unique_ptr<input::MotionPriors> priors = load_priors(options, *source);
+  const live::Sensors sensors = open_sensors(options, *source);
   Run run;
-  CameraMotion motion(*source->rig(), priors.get(), run);
+  CameraMotion motion(*source->rig(), sensors, run);
   live::LiveOptions how = live::LiveOptions::unpaced();
   how.is_ended = [] { return is_interrupted() || !std::cout; };
   how.step = [&motion](const auto& frame, const auto& used, const auto& by) {
@@ -197,7 +194,7 @@ int estimate(const OdometryOptions& options) {
   catch_interrupts();
   runner.run();
   if (!options.output.empty()) io::write_file(options.output, output::trajectory_text(run.poses, form));
-  std::cerr << remarks_text(*source) << summary(run, priors.get());
+  std::cerr << remarks_text(*source) << summary(run, sensors);
   return is_interrupted() ? kInterrupted : exit_code_of(*source);
 }
 
@@ -206,11 +203,12 @@ int estimate(const OdometryOptions& options) {
 Work declare_odometry(CLI::App& app) {
   auto options = std::make_shared<OdometryOptions>();
   add_source_options(app, options->input);
-  app.add_option("--odometry", options->wheels,
-                 "wheel odometry: t_s,v_m_per_s,omega_rad_per_s, or poses; or a topic of the recording")
+  app.add_option(
+         "--odometry", options->wheels,
+         "wheel odometry: t_s,v_m_per_s,omega_rad_per_s, or poses; or a topic, of the recording or live")
       ->type_name("FILE|ros2:TOPIC");
   app.add_option("--imu", options->imu,
-                 "gyroscope rates in the form of EuRoC's data.csv, or a topic of the recording")
+                 "gyroscope rates in the form of EuRoC's data.csv, or a topic, of the recording or live")
       ->type_name("FILE|ros2:TOPIC");
   app.add_option("--form", options->form, "form of the poses: tum, kitti or euroc")
       ->type_name("NAME")

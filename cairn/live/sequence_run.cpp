@@ -11,8 +11,6 @@
 #include <utility>
 
 #include <cairn/input/camera/without_password.hpp>
-#include <cairn/input/mcap_sequence.hpp>
-#include <cairn/input/open_parts.hpp>
 #include <cairn/output/trajectory_files.hpp>
 
 namespace cairn::live {
@@ -42,77 +40,20 @@ std::optional<Pose> pose_at(const std::vector<TimedPose>& poses, Stamp stamp, co
   return best->map_from_camera;
 }
 
-/// The topics among these files.
-input::SensorTopicNames topics_among(const SensorFiles& files) {
-  const auto topic = [](const std::optional<fs::path>& file) {
-    return file ? input::topic_in(file->string()).value_or("") : "";
-  };
-  return {topic(files.odometry), topic(files.imu), topic(files.scan)};
-}
-
-/// The topics of the recording that the source is. Throws Error if it is none.
-input::SensorTopics recorded(const input::SensorTopicNames& names, const std::string& source_name,
-                             const input::Sequence& source) {
-  const auto recording = input::recording_of(source_name);
-  if (!recording) {
-    const std::string& topic = !names.odometry.empty() ? names.odometry
-                               : !names.imu.empty()    ? names.imu
-                                                       : names.scan;
-    throw Error("ros2:" + topic + ": is a topic, expected a recording (MCAP)" +
-                (source.status().is_live ? "" : " or a live source") + ", found " + source.name());
-  }
-  return input::read_sensor_topics(*recording, names, source.frame_id());
-}
-
 }  // namespace
-
-std::unique_ptr<input::MotionPriors> open_priors(const std::optional<fs::path>& odometry,
-                                                 const std::optional<fs::path>& imu,
-                                                 const std::string& source_name,
-                                                 const input::Sequence& source,
-                                                 std::vector<std::string>* assumptions) {
-  SensorFiles files;
-  files.odometry = odometry;
-  files.imu = imu;
-  if (const auto names = topics_among(files); names.any()) {
-    const input::SensorTopics topics = recorded(names, source_name, source);
-    if (assumptions != nullptr) std::ranges::copy(topics.assumptions(), std::back_inserter(*assumptions));
-    return topics.priors();
-  }
-  if (odometry) return input::load_odometry(*odometry, source_name);
-  if (imu) return input::load_imu(*imu, input::mounting_of_imu(*imu, source.rectifier()).value_or(Pose{}));
-  return nullptr;
-}
 
 SequenceRun::SequenceRun(const input::Sequence& source, std::string source_name, const SensorFiles& files,
                          FollowConfig config, Exec exec)
     : source_(source),
       source_name_(std::move(source_name)),
       follower_(std::move(config), source.rig(), std::move(exec)),
+      sensors_(files, source_name_, source),
       is_map_read_only_(files.is_map_read_only),
       start_(files.start) {
   if (files.poses) {
     poses_name_ = files.poses->string();
     poses_ = known_poses(*files.poses);
   }
-  const input::SensorTopicNames topics = topics_among(files);
-  const bool is_live = source.status().is_live;
-  if (topics.any() && is_live && source.status().clock == "monotonic") {
-    throw Error(source.name() +
-                ": its stamps count from the start of the computer, those of ROS topics from 1970: expected "
-                "images from ros2:, too");
-  }
-  if (topics.any() && is_live) {
-    live_ = input::open_sensor_topics(topics, source.frame_id());
-  } else if (topics.any()) {
-    const input::SensorTopics said = recorded(topics, source_name_, source);
-    priors_ = said.priors();
-    scans_ = said.scans();
-    assumptions_ = said.assumptions();
-  }
-  if (topics.odometry.empty() && topics.imu.empty())
-    priors_ = open_priors(files.odometry, files.imu, source_name_, source);
-  if (files.scan && topics.scan.empty()) scans_ = input::load_scans(*files.scan);
   if (files.map) {
     map_.emplace(
         MapFile::open(*files.map, is_map_read_only_ ? MapMode::read_only : MapMode::update, source.rig()));
@@ -134,14 +75,11 @@ TrackedFrame SequenceRun::next(const input::SequenceFrame& frame) {
     if (map_ && !is_map_read_only_) map_->end_run(RunState::done, marked_.state.map);
     begin_run(frame.stamp, std::move(marked_.state.map), marked_.state.run + 1, std::nullopt);
   }
-  if (priors_ && has_begun_ && !is_set_back)
-    prior = priors_->between(before_, frame.stamp, camera_from_level(pose_before_));
-  if (live_ && has_begun_ && !is_set_back && !prior)
-    prior = live_->between(before_, frame.stamp, camera_from_level(pose_before_));
+  if (has_begun_ && !is_set_back)
+    prior = sensors_.between(before_, frame.stamp, camera_from_level(pose_before_));
   if (frame.after_gap) follower_.forget();
   const std::optional<Pose> pose = pose_at(poses_, frame.stamp, poses_name_);
-  const std::optional<LaserScan> live_scan = live_ ? live_->scan_at(frame.stamp) : std::nullopt;
-  const LaserScan* const scan = live_scan ? &*live_scan : input::scan_at(scans_, frame.stamp);
+  const LaserScan* const scan = sensors_.scan_at(frame.stamp);
   TrackedFrame step = frame.disparity_px.empty()
                           ? follower_.next(input::pair_of(frame), frame.stamp, prior, pose, scan)
                           : follower_.next({frame.left.gray, frame.left.rgb}, frame.disparity_px, frame.stamp,

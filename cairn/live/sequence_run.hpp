@@ -2,43 +2,17 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
-#include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <cairn/input/laser_scans.hpp>
-#include <cairn/input/priors.hpp>
-#include <cairn/input/sensor_topics.hpp>
 #include <cairn/input/sequence.hpp>
+#include <cairn/live/sensors.hpp>
 #include <cairn/sequence/follower.hpp>
 #include <cairn/sequence/map_file.hpp>
 #include <cairn/sequence/trajectory_error.hpp>
 
 namespace cairn::live {
-
-/// Data files of other sensors for a sequence. At most one of odometry, imu and poses; all are in metres, so
-/// the source needs a rig. Odometry, imu and scan may also be topics of ROS 2, "ros2:/odom": of the recording if the
-/// source is one, else live.
-struct SensorFiles {
-  std::optional<std::filesystem::path> odometry;
-  std::optional<std::filesystem::path> imu;
-  std::optional<std::filesystem::path> poses;
-  std::optional<std::filesystem::path> scan;
-  std::optional<std::filesystem::path> map;
-  bool is_map_read_only = false;
-  std::optional<Pose> start;  // in the map; nullopt: to be found by landmarks
-};
-
-/// The motion priors from odometry or gyroscope, whichever is given as a file or as a topic of a recording; null without
-/// either. `source_name`: the argument of open_sequence(). Throws Error like load_odometry(), load_imu() and
-/// read_sensor_topics(), and for topics of another source. `assumptions`: gets what SensorTopics assumes.
-std::unique_ptr<input::MotionPriors> open_priors(const std::optional<std::filesystem::path>& odometry,
-                                                 const std::optional<std::filesystem::path>& imu,
-                                                 const std::string& source_name,
-                                                 const input::Sequence& source,
-                                                 std::vector<std::string>* assumptions = nullptr);
 
 /// Follows a source frame by frame, with data of other sensors and landmarks; Runner (runner.hpp) is the loop
 /// around it.
@@ -62,9 +36,7 @@ class SequenceRun {
   /// MapFile::map_id() of the map; empty without one.
   [[nodiscard]] const std::string& map_id() const { return map_id_; }
   /// What is assumed about sensors on topics that have no transform to the camera, one line each.
-  [[nodiscard]] std::vector<std::string> assumptions() const {
-    return live_ ? live_->assumptions() : assumptions_;
-  }
+  [[nodiscard]] std::vector<std::string> assumptions() const { return sensors_.assumptions(); }
   /// Like Follower::set_config().
   void set_config(FollowConfig config) { follower_.set_config(std::move(config)); }
   /// Ends the run in the map. No effect without a writable map or any frame.
@@ -78,13 +50,10 @@ class SequenceRun {
   const input::Sequence& source_;
   std::string source_name_;
   Follower follower_;
-  std::unique_ptr<input::MotionPriors> priors_;
+  Sensors sensors_;
   std::vector<TimedPose> poses_;
   std::string poses_name_;
-  std::vector<LaserScan> scans_;
-  std::unique_ptr<input::LiveSensors> live_;
-  std::vector<std::string> assumptions_;  // of a recording
-  std::optional<MapFile> map_;            // nullopt when closed
+  std::optional<MapFile> map_;  // nullopt when closed
   std::string map_id_;
   bool is_map_read_only_ = false;
   std::optional<Pose> start_;

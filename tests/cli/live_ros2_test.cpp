@@ -11,6 +11,7 @@
 
 #include "command.hpp"
 #include "support/dds_domain.hpp"
+#include "support/sensor_messages.hpp"
 
 /// cairn live --ros2, received by another process.
 namespace cairn::command {
@@ -153,6 +154,33 @@ TEST_F(LiveRos2, ACameraOnTopicsIsSegmentedAsItsImagesAre) {
     ++heard;
   }
   EXPECT_GE(heard, 1) << live.err;
+}
+
+TEST_F(LiveRos2, WheelsOnATopicArePriorsOfOdometry) {
+  const std::string prefix = own_topic("wheels");
+  const Camera camera(prefix);
+  const ros::Participant participant;
+  ros::Writer<ros::Odometry> wheels(participant, prefix + "/odom");
+  std::atomic<bool> is_over = false;
+  std::thread robot([&] {
+    ros::Odometry message = sensor_messages::odometry(1).front();
+    // Ahead of the images, so that none has to wait; the robot stands.
+    for (std::int64_t i = 1; !is_over; ++i) {
+      message.header.stamp = ros::time_of({i * 20'000'000 + 500'000'000});
+      wheels.write(message);
+      std::this_thread::sleep_for(20ms);
+    }
+  });
+  const Outcome outcome =
+      run({"odometry", "ros2:" + prefix, "--odometry", "ros2:" + prefix + "/odom", "--frames", "20"});
+  is_over = true;
+  robot.join();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string used = "prior: topic " + prefix + "/odom, used for ";
+  const auto at = outcome.err.find(used);
+  ASSERT_NE(at, std::string::npos) << outcome.err;
+  EXPECT_GE(std::stoi(outcome.err.substr(at + used.size())), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("/tf_static has no transform from base_link"), std::string::npos) << outcome.err;
 }
 
 TEST_F(LiveRos2, RefusesNamesThatRosDoesNotAllow) {
