@@ -58,7 +58,7 @@ void add_source_options(CLI::App& app, SourceInput& input) {
          "--topics", input.options.topics,
          "topics of a recording (default: found by type and name) or of ros2: (default: "
          "left/image_rect,right/image_rect): left and right, an image and its depth or disparities, or all "
-         "three, where the right image checks the depth")
+         "three: then follow and live compare the depth with the right image")
       ->type_name("A,B[,C]");
   add_map_options(app, input.options.maps);
   app.add_option("--rate", input.options.rate_hz,

@@ -30,6 +30,7 @@ build_key() {
   local type flags
   type=$(cached CMAKE_BUILD_TYPE)
   flags="$(cached CMAKE_CXX_FLAGS) $(cached "CMAKE_CXX_FLAGS_${type^^}")"
+  [[ $(cached CAIRN_QUICK) == ON ]] && flags+=" -g1"
   [[ $(cached CAIRN_NATIVE) == ON ]] && flags+=" -march=native"
   [[ -n $(cached CAIRN_SANITIZE) ]] && flags+=" -fsanitize=$(cached CAIRN_SANITIZE)"
   # Without the name that the compiler was called by: c++ and g++ are one.

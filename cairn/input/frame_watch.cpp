@@ -94,7 +94,7 @@ bool FrameWatch::continues(Stamp stamp, const std::string& name, std::vector<Sou
 
 void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<SourceRemark>& remarks) {
   const Size size = frame.left.gray.size();
-  const bool is_given = frame.right.empty();
+  const bool is_given = !frame.disparity_px.empty();
   PreviousFrame now{frame.stamp, frame.name, hash_of<Gray>(frame.left.gray),
                     is_given ? hash_of<float>(frame.disparity_px) : hash_of<Gray>(frame.right)};
   if (!before_) {

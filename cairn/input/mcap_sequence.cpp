@@ -30,9 +30,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMaxWaiting = 64;
 // … and the most bytes of all of them, beyond one each.
 constexpr std::size_t kMaxWaitingBytes = std::size_t{512} << 20;
-// The most images that accompany others and wait for them.
-constexpr std::size_t kMaxAccompanying = 16;
-// The most left images that are read while one waits for the right one that checks its depth.
+// The most left images that are read on for the right one that checks a depth.
 constexpr std::size_t kMaxAhead = 4;
 
 /// One camera's images.
@@ -70,18 +68,14 @@ class McapSequence : public SourceSequence {
     const StereoTopics topics = find_stereo_topics(reader_.channels(), options.topics, file.string());
     sides_[0].channel = topics.left;
     sides_[1].channel = topics.right;
-    has_depth_ = topics.has_depth || has_depth_by_encoding(topics);
-    if (topics.checked && !has_depth_) {
-      throw Error("--topics: " + topics.right.topic + " is no depth or disparity image of " +
-                  topics.left.topic);
-    }
+    has_depth_ = topics.has_depth || topics.checking || has_depth_by_encoding(topics);
     if (has_depth_ && options.rectify)
       throw Error("--rectify: " + topics.right.topic + " belongs to a rectified image");
     calibrate(topics);
     std::vector<std::uint16_t> wanted{topics.left.id, topics.right.id};
     if (topics.left_grey) wanted.push_back(*topics.left_grey);
-    if (topics.checked) wanted.push_back(topics.checked->id);
-    checked_ = topics.checked;
+    if (topics.checking) wanted.push_back(topics.checking->id);
+    checking_ = topics.checking;
     reader_.rewind();
     reader_.only(wanted);
     first_ = McapSequence::advance();
@@ -155,12 +149,13 @@ class McapSequence : public SourceSequence {
       return;
     }
     const auto left = first_of<ros::CameraInfo>(topics.left_info);
-    if (has_depth_) image_info_ = left;
-    if (has_depth_ && !(topics.checked && topics.right_info)) {
-      if (left) calibrate(*left);
+    const auto right =
+        has_depth_ && !topics.checking ? std::nullopt : first_of<ros::CameraInfo>(topics.right_info);
+    if (has_depth_) {
+      if (left) calibrate(*left, right ? &*right : nullptr);
+      image_info_ = left;
       return;
     }
-    const auto right = first_of<ros::CameraInfo>(topics.right_info);
     if (!left || !right) {
       if (topics.is_raw || options_.rectify) refuse_raw("without camera_info");
       return;
@@ -187,11 +182,11 @@ class McapSequence : public SourceSequence {
       throw Error(file_.string() + ": " + error.what());
     }
   }
-  /// Of an image with depth.
-  void calibrate(const ros::CameraInfo& info) {
+  /// Of an image with depth. `right`: of a right image that checks it, nullptr if unknown.
+  void calibrate(const ros::CameraInfo& info, const ros::CameraInfo* right) {
     calibration_.path = file_ / "camera_info";
     try {
-      set_camera(calibration_.says, info, sides_[0].channel.topic);
+      set_cameras(calibration_.says, info, right, sides_[0].channel.topic);
       if (const Size size = ros::image_size_of(info); size.area() > 0) calibration_.says.image_size = size;
     } catch (const Error& error) {
       throw Error(file_.string() + ": " + error.what());
@@ -301,13 +296,18 @@ class McapSequence : public SourceSequence {
     return decoded(std::type_identity<ros::Image>{});
   }
   void take_accompanying(const ros::McapMessage& message) {
+    const bool is_right = checking_ && message.channel == checking_->id;
     try {
       Stamp stamp;
       std::string unused;
-      const bool is_right = checked_ && message.channel == checked_->id;
-      io::Raster image = raster_in(message, is_right ? *checked_ : ros::McapChannel(), stamp, unused);
+      io::Raster image = raster_in(message, is_right ? *checking_ : ros::McapChannel(), stamp, unused);
       (is_right ? rights_ : greys_).push(stamp, std::move(image));
-    } catch (const Error&) {  // colour contains grey, up to rounding; a frame without its right image says so
+    } catch (const Error& error) {
+      // Colour contains grey, up to rounding.
+      if (is_right) {
+        remark(remarks_, {"image that cannot be read", 1,
+                          "on " + checking_->topic + " (" + error.what() + ")", false, true});
+      }
     }
   }
   static Stamp stamp_of(const ros::Header& header, const ros::McapMessage& message) {
@@ -367,7 +367,7 @@ class McapSequence : public SourceSequence {
       if (watch_.image_size().area() == 0) {
         calibration_.suit(frame.left.gray.size());
         if (right.depth) {
-          if (checked_) check_baseline(calibration_.says, *right.depth, file_.string());
+          if (checking_) check_baseline(calibration_.says, *right.depth, file_.string());
           complete(calibration_.says, *right.depth);
           std::ranges::move(
               remarks_on({sides_[0].channel.topic, left.frame_id, sides_[1].channel.topic, right.frame_id},
@@ -392,11 +392,12 @@ class McapSequence : public SourceSequence {
   }
   /// The right image that checks the depth of a frame.
   std::optional<io::Raster> right_at(Stamp stamp, const std::string& frame) {
-    if (!checked_) return std::nullopt;
-    while (!rights_.reaches(stamp) && pairing_.waiting(0).size() < kMaxAhead && read_on()) {
+    if (!checking_) return std::nullopt;
+    const std::size_t most = std::min(pairing_.waiting(0).size() + kMaxAhead, kMaxWaiting);
+    while (!rights_.reaches(stamp) && pairing_.waiting(0).size() < most && read_on()) {
     }
     std::optional<io::Raster> right = rights_.take(stamp);
-    if (!right) remark(remarks_, {kUnchecked, 1, frame, false, false});
+    if (!right) remark(remarks_, {unchecked_on(checking_->topic), 1, frame, false, false});
     return right;
   }
   void end() {
@@ -421,11 +422,11 @@ class McapSequence : public SourceSequence {
   std::array<Side, 2> sides_;
   Pairing pairing_;
   std::array<std::optional<Stamp>, 2> first_stamps_;
-  std::optional<ros::McapChannel> checked_;  // the right images that check depths
+  std::optional<ros::McapChannel> checking_;  // the right images that check depths
   bool has_depth_ = false;
   std::optional<ros::CameraInfo> image_info_;  // of an image with depth
-  StampedImages<io::Raster> greys_{0, kMaxAccompanying};
-  StampedImages<io::Raster> rights_{options_.max_skew_ms, kMaxAccompanying};
+  StampedImages greys_{0, kMaxWaiting, kMaxWaitingBytes};
+  StampedImages rights_{options_.max_skew_ms, kMaxWaiting, kMaxWaitingBytes};
   std::size_t pairs_ = 0;
   int bits_ = 8;
   bool is_past_range_ = false;

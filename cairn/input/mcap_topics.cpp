@@ -146,20 +146,6 @@ std::vector<std::pair<const McapChannel*, const McapChannel*>> with_depth(const 
 
 }  // namespace
 
-std::vector<std::string> split_topics(const std::string& topics) {
-  std::vector<std::string> names(1);
-  for (const char c : topics) {
-    if (c == ',') {
-      names.emplace_back();
-    } else {
-      names.back() += c;
-    }
-  }
-  if (names.size() < 2 || names.size() > 3 || std::ranges::any_of(names, &std::string::empty))
-    throw Error("--topics: found " + topics + ", expected LEFT,RIGHT, IMAGE,DEPTH or LEFT,RIGHT,DEPTH");
-  return names;
-}
-
 StereoTopics find_stereo_topics(const Channels& channels, const std::string& wanted,
                                 const std::string& file) {
   const std::string all = image_topics(channels);
@@ -176,7 +162,7 @@ StereoTopics find_stereo_topics(const Channels& channels, const std::string& wan
     }
     StereoTopics topics = with_companions(channels, *images.front(), *images.back());
     if (images.size() == 3) {
-      topics.checked = *images[1];
+      topics.checking = *images[1];
       topics.right_info = info_of(channels, *images[1]);
     }
     return topics;
@@ -194,7 +180,7 @@ StereoTopics find_stereo_topics(const Channels& channels, const std::string& wan
   if (best.empty()) {
     throw Error(file +
                 ": has no topics of left and right images, nor of an image and its depth, expected --topics "
-                "LEFT,RIGHT or IMAGE,DEPTH; " +
+                "LEFT,RIGHT, IMAGE,DEPTH or LEFT,RIGHT,DEPTH; " +
                 there);
   }
   if (best.size() > 1) {

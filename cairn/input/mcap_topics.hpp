@@ -6,21 +6,17 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <cairn/ros/mcap.hpp>
 
 /// The stereo topics of a recording; internal to source.
 namespace cairn::input {
 
-/// SourceOptions::topics, two or three. Throws Error.
-std::vector<std::string> split_topics(const std::string& topics);
-
 struct StereoTopics {
   ros::McapChannel left;
-  ros::McapChannel right;                   // or, with has_depth, the depth or disparity image
-  std::optional<ros::McapChannel> checked;  // with has_depth: the right image that checks it
-  std::optional<std::uint16_t> left_grey;   // the grey of left images if not derivable from colours
+  ros::McapChannel right;                    // or, with has_depth, the depth or disparity image
+  std::optional<ros::McapChannel> checking;  // with has_depth: the right image that checks it
+  std::optional<std::uint16_t> left_grey;    // the grey of left images if not derivable from colours
   std::optional<std::uint16_t> left_info;
   std::optional<std::uint16_t> right_info;
   bool is_raw = false;  // by the topic name

@@ -130,6 +130,12 @@ void set_camera(io::Calibration& calibration, const ros::CameraInfo& info, const
   calibration.one_camera = ros::one_camera_of(info, is_raw(topic), images);
 }
 
+void set_cameras(io::Calibration& calibration, const ros::CameraInfo& left, const ros::CameraInfo* right,
+                 const std::string& topic, std::optional<Size> images) {
+  set_camera(calibration, left, topic, images);
+  if (right != nullptr && right->p[3] != 0) calibration.rig = ros::rig_of(left, *right, images);
+}
+
 std::vector<SourceRemark> remarks_on(const DepthNames& names, const ros::CameraInfo* info) {
   std::vector<SourceRemark> remarks;
   if (names.image_frame != names.depth_frame && !names.depth_frame.empty()) {
@@ -159,9 +165,14 @@ void complete(io::Calibration& calibration, const RosDepth& first) {
 
 void check_baseline(const io::Calibration& calibration, const RosDepth& first, const std::string& source) {
   if (calibration.rig || first.of_message) return;
-  throw Error(source +
-              ": has no baseline, which depth checked by a right image needs: expected camera_info of both "
-              "cameras, or --calib FILE");
+  throw Error(
+      source +
+      ": has no baseline, without which no right image can check depths in m: expected camera_info of both "
+      "cameras, or --calib FILE with baseline=");
+}
+
+std::string unchecked_on(const std::string& topic) {
+  return "depth not checked, without a right image on " + topic;
 }
 
 Image<float> disparity_of(const RosDepth& depth, Size image, const std::optional<StereoRig>& rig,

@@ -42,6 +42,10 @@ RosDepth depth_of(const ros::DisparityImage& image, const Pool& pool);
 /// Error if the message is of images of another size.
 void set_camera(io::Calibration& calibration, const ros::CameraInfo& info, const std::string& topic,
                 std::optional<Size> images = std::nullopt);
+/// The same, with the baseline where the right camera's P has one: for right images that check depths. `right`: nullptr
+/// if unknown.
+void set_cameras(io::Calibration& calibration, const ros::CameraInfo& left, const ros::CameraInfo* right,
+                 const std::string& topic, std::optional<Size> images = std::nullopt);
 /// The topics of an image and its depth, and the frame_id of their headers.
 struct DepthNames {
   std::string image_topic;
@@ -58,8 +62,8 @@ std::vector<SourceRemark> remarks_on(const DepthNames& names, const ros::CameraI
 void complete(io::Calibration& calibration, const RosDepth& first);
 /// A right image can check depths in m only if the baseline is known. Throws Error, with the source's name.
 void check_baseline(const io::Calibration& calibration, const RosDepth& first, const std::string& source);
-/// The remark on a frame without that right image.
-inline constexpr const char* kUnchecked = "depth without the right image that checks it";
+/// The remark on a frame without that right image: "depth not checked, without a right image on /right/image_rect".
+std::string unchecked_on(const std::string& topic);
 /// The disparities of an image of this size. Throws Error if the size differs, and for depths without a rig.
 Image<float> disparity_of(const RosDepth& depth, Size image, const std::optional<StereoRig>& rig,
                           const Pool& pool);

@@ -7,6 +7,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/io/read_file.hpp>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
 #include <cairn/input/camera/open_camera.hpp>
@@ -222,6 +223,21 @@ StereoPair pair_of(const SequenceFrame& frame) {
                 ": has a depth image or disparities instead of a right image, expected a pair");
   }
   return StereoPair::from(frame.left.gray, frame.right, frame.left.rgb);
+}
+
+std::vector<std::string> split_topics(const std::string& topics) {
+  std::vector<std::string> names(1);
+  for (const char c : topics) {
+    if (c == ',') {
+      names.emplace_back();
+    } else {
+      names.back() += c;
+    }
+  }
+  const std::set<std::string> different(names.begin(), names.end());
+  if (names.size() < 2 || names.size() > 3 || different.size() < names.size() || different.contains(""))
+    throw Error("--topics: found " + topics + ", expected LEFT,RIGHT, IMAGE,DEPTH or LEFT,RIGHT,DEPTH");
+  return names;
 }
 
 FrameRange parse_frame_range(std::string_view text) {

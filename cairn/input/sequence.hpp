@@ -91,6 +91,9 @@ struct SourceOptions {
   double open_timeout_s = 10;      // for cameras: until the first pair
 };
 
+/// The names in SourceOptions::topics: two or three, all different. Throws Error.
+std::vector<std::string> split_topics(const std::string& topics);
+
 /// A remark on frames of a source, with their number. No frame is skipped without such a remark.
 struct SourceRemark {
   std::string what;          // "left image without a right one"

@@ -7,14 +7,16 @@
 #include <atomic>
 #include <cairn/core/error.hpp>
 #include <cairn/io/frame_names.hpp>
+#include <cairn/io/raster.hpp>
 #include <cstdio>
 #include <iterator>
+#include <memory>
 #include <mutex>
+#include <thread>
 #include <variant>
 
 #include <cairn/input/frame_list.hpp>
 #include <cairn/input/frame_watch.hpp>
-#include <cairn/input/mcap_topics.hpp>
 #include <cairn/input/ros_depth.hpp>
 #include <cairn/input/ros_pictures.hpp>
 #include <cairn/input/stamped_images.hpp>
@@ -34,6 +36,8 @@ constexpr std::string_view kPrefix = "ros2:";
 constexpr auto kNotice = 50ms;
 /// How long the first pair waits for the cameras' camera_info.
 constexpr auto kInfoWait = 2s;
+/// How long a frame with depth waits for the right image that checks it.
+constexpr auto kRightWait = 50ms;
 /// Time without a pair after which the cameras count as lost.
 constexpr auto kSilence = 3s;
 
@@ -54,11 +58,12 @@ class Ros2Sequence : public SourceSequence {
         topics_(topics_of(options)),
         left_(participant_, topics_[0]),
         right_(second_reader(participant_, topics_[1], options.topics)),
+        rights_reader_(is_checked() ? std::make_unique<ros::Reader<ros::Image>>(participant_, topics_[2])
+                                    : nullptr),
         infos_{ros::Reader<ros::CameraInfo>(participant_, info_topic(topics_[0])),
                ros::Reader<ros::CameraInfo>(participant_, info_topic(topics_.back()))},
-        wait_(participant_, {&left_, &reader(1)}),
+        wait_(participant_, readers()),
         pairing_(options.max_skew_ms, [this](std::size_t, auto&&) { ++unpaired_; }) {
-    if (is_checked()) rights_reader_.emplace(participant_, topics_[2]);
     calibration_ = open_calibration(options, std::nullopt, false, false);
     first_ = opened();
   }
@@ -138,12 +143,21 @@ class Ros2Sequence : public SourceSequence {
     if (side == 0) return left_;
     return std::visit([](const auto& reader) -> const ros::BytesReader& { return reader; }, right_);
   }
-  [[nodiscard]] std::uint64_t lost() const { return left_.lost() + reader(1).lost(); }
+  [[nodiscard]] std::vector<const ros::BytesReader*> readers() const {
+    std::vector<const ros::BytesReader*> all{&left_, &reader(1)};
+    if (rights_reader_) all.push_back(rights_reader_.get());
+    return all;
+  }
+  [[nodiscard]] std::uint64_t lost() const {
+    std::uint64_t sum = 0;
+    for (const ros::BytesReader* each : readers()) sum += each->lost();
+    return sum;
+  }
 
   /// Whether the second one is a depth or disparity image.
   [[nodiscard]] bool has_depth(const Pair& pair) const {
     const auto* const second = std::get_if<ros::Image>(&pair.right.value.message);
-    if (second == nullptr) return true;
+    if (second == nullptr || is_checked()) return true;
     return !options_.topics.empty() &&
            is_depth_of(second->encoding, pair.left.value.image().encoding, topics_[1], topics_[0]);
   }
@@ -199,14 +213,31 @@ class Ros2Sequence : public SourceSequence {
   }
 
   void take_rights() {
-    if (!rights_reader_) return;
-    try {
-      while (std::optional<ros::Image> right = rights_reader_->take()) {
-        const Stamp stamp = ros::stamp_of(right->header.stamp);
-        rights_.push(stamp, std::move(*right));
+    while (rights_reader_) {
+      try {
+        const std::optional<ros::Image> right = rights_reader_->take();
+        if (!right) return;
+        rights_.push(ros::stamp_of(right->header.stamp), raster_of(*right));
+        has_right_ = true;
+      } catch (const Error& error) {
+        remark(remarks_, {"message that is not an image", 1, "on " + topics_[2] + " (" + error.what() + ")",
+                          true, false});
       }
-    } catch (const Error&) {  // the frame says that it has none
     }
+  }
+  /// The right image that checks the depth of a frame; waits for it for a moment.
+  std::optional<io::Raster> right_at(Stamp stamp, const std::string& frame) {
+    if (!is_checked()) return std::nullopt;
+    const Clock::time_point until = Clock::now() + kRightWait;
+    take_rights();
+    // Nobody waits for a camera that has never sent an image.
+    while (has_right_ && !rights_.reaches(stamp) && !is_stopped_ && Clock::now() < until) {
+      std::this_thread::sleep_for(kRightWait / 20);
+      take_rights();
+    }
+    std::optional<io::Raster> right = rights_.take(stamp);
+    if (!right) remark(remarks_, {unchecked_on(topics_[2]), 1, frame, false, false});
+    return right;
   }
 
   /// Reads the cameras' parameters that have arrived; true if those of both, or of an image with depth, are known.
@@ -266,8 +297,6 @@ class Ros2Sequence : public SourceSequence {
   void calibrate(const Pair& pair, bool needs_infos) {
     const Size size{static_cast<int>(pair.left.value.image().width),
                     static_cast<int>(pair.left.value.image().height)};
-    if (is_checked() && !has_depth(pair))
-      throw Error("--topics: " + topics_[1] + " is no depth or disparity image of " + topics_[0]);
     if (has_depth(pair)) {
       if (options_.rectify) throw Error("--rectify: " + topics_[1] + " belongs to a rectified image");
       calibrate_depth(pair, size, needs_infos);
@@ -282,11 +311,11 @@ class Ros2Sequence : public SourceSequence {
   void calibrate_depth(const Pair& pair, Size size, bool needs_infos) {
     if (!needs_infos) {
       calibration_.suit(size);
-    } else if (is_checked() && last_infos_[0] && last_infos_[1]) {
-      calibration_.says.rig = rig_of_infos(size);
     } else if (last_infos_[0]) {
       try {
-        set_camera(calibration_.says, *last_infos_[0], topics_[0], size);
+        const bool has_both = is_checked() && last_infos_[1];
+        set_cameras(calibration_.says, *last_infos_[0], has_both ? &*last_infos_[1] : nullptr, topics_[0],
+                    size);
       } catch (const Error& error) {
         throw Error(source_ + ": " + error.what());
       }
@@ -333,12 +362,12 @@ class Ros2Sequence : public SourceSequence {
     if (!options_.frames.contains(index)) return std::nullopt;
     const bool is_depth = has_depth(pair);
     const ros::Image& left = pair.left.value.image();
-    const std::optional<ros::Image> checking = is_checked() ? rights_.take(stamp) : std::nullopt;
-    if (is_checked() && !checking) remark(remarks_, {kUnchecked, 1, io::number_text(index), false, false});
+    const std::optional<io::Raster> checking = right_at(stamp, io::number_text(index));
     const bool has_right = !is_depth || checking;
-    const ros::Image& other = checking ? *checking : is_depth ? left : pair.right.value.image();
-    io::LoadedPair images =
-        pictures_of(left, topics_[0], other, has_right ? topics_.back() : topics_[0], bits_, pool_);
+    io::LoadedPair images = checking
+                                ? io::pair_of(raster_of(left), *checking, pool_, bits_)
+                                : pictures_of(left, topics_[0], is_depth ? left : pair.right.value.image(),
+                                              topics_[is_depth ? 0 : 1], bits_, pool_);
     bits_ = images.bits;
     images = calibration_.rectified(std::move(images), pool_);
     SequenceFrame frame{
@@ -387,8 +416,9 @@ class Ros2Sequence : public SourceSequence {
   ros::Participant participant_;
   ros::Reader<ros::Image> left_;
   SecondReader right_;
-  std::optional<ros::Reader<ros::Image>> rights_reader_;
-  StampedImages<ros::Image> rights_{options_.max_skew_ms, kMaxWaiting};
+  std::unique_ptr<ros::Reader<ros::Image>> rights_reader_;  // of those that check depths
+  StampedImages rights_{options_.max_skew_ms, kMaxWaiting};
+  bool has_right_ = false;
   std::array<ros::Reader<ros::CameraInfo>, 2> infos_;
   ros::ReaderWait wait_;
   Pairing pairing_;

@@ -5,6 +5,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/input/ros_depth.hpp>
 #include <cairn/input/sequence.hpp>
+#include <cairn/input/stamped_images.hpp>
 #include <cairn/io/disparity_files.hpp>
 #include <cairn/io/raster.hpp>
 #include <cairn/stereo/disparity_map.hpp>
@@ -377,10 +378,62 @@ TEST_F(CheckedRecording, AFrameWithoutItsRightImageSaysSo) {
   while (const auto frame = sequence->next()) has_right.push_back(!frame->right.empty());
   EXPECT_EQ(has_right, (std::vector<bool>{true, false, true}));
   const auto remarks = sequence->remarks();
-  const auto said = std::ranges::find(remarks, std::string(kUnchecked), &SourceRemark::what);
+  const auto said = std::ranges::find(remarks, unchecked_on("/right/image_rect"), &SourceRemark::what);
   ASSERT_NE(said, remarks.end());
   EXPECT_EQ(said->count, 1U);
   EXPECT_EQ(said->first, "000001");
+}
+
+TEST_F(CheckedRecording, ARightImageOfAnotherFrameChecksNothing) {
+  record_three(true, {0, 2});
+  SourceOptions options = three();
+  options.max_skew_ms = 150;  // more than a period
+  const auto frames = frames_of(file().string(), options);
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_TRUE(frames[1].right.empty());
+  EXPECT_FALSE(frames[2].right.empty());
+}
+
+TEST_F(CheckedRecording, ACalibrationMayHaveTheBaseline) {
+  record_three(false, {0, 1, 2});
+  SourceOptions options = three();
+  const fs::path calib = file().parent_path() / "calib.txt";
+  recordings::write(calib, kOneCamera + "baseline=0.09\n");
+  options.calib = calib.string();
+  const auto sequence = open_sequence(file().string(), options);
+  ASSERT_TRUE(sequence->rig());
+  EXPECT_EQ(sequence->rig()->baseline_m, 0.09F);
+  EXPECT_FALSE(sequence->next()->right.empty());
+}
+
+TEST(StampedImagesTest, AreTakenByTheNearestStamp) {
+  const auto image = [](std::uint8_t value) {
+    io::Raster raster;
+    raster.size = {1, 1};
+    raster.bytes = {value};
+    return raster;
+  };
+  const auto ms = [](std::int64_t value) { return Stamp{value * 1'000'000}; };
+  StampedImages images(20, 3);
+  EXPECT_FALSE(images.reaches(ms(0)));
+  images.push(ms(1000), image(1));
+  images.push(ms(1010), image(2));
+  images.push(ms(1005), image(9));  // out of order
+  EXPECT_TRUE(images.reaches(ms(1010)));
+  EXPECT_FALSE(images.reaches(ms(1011)));
+  const auto taken = images.take(ms(1012));
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->bytes[0], 2);
+  EXPECT_FALSE(images.take(ms(1040)));  // nothing within 20 ms
+  images.push(ms(1050), image(3));
+  EXPECT_FALSE(images.take(ms(1052)) && images.take(ms(1053))) << "each once";
+  for (std::uint8_t i = 0; i < 5; ++i) images.push(ms(2000 + 10 * i), image(i));
+  EXPECT_FALSE(images.take(ms(1990))) << "only the last three wait";
+  images.push(ms(100), image(7));  // the clock was set back
+  EXPECT_FALSE(images.reaches(ms(110)));
+  const auto after = images.take(ms(101));
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->bytes[0], 7);
 }
 
 TEST_F(CheckedRecording, RefusesWhatCannotBeChecked) {
@@ -390,8 +443,8 @@ TEST_F(CheckedRecording, RefusesWhatCannotBeChecked) {
   SourceOptions options = three();
   options.topics = "/left/image_rect,/left/depth,/right/image_rect";
   EXPECT_TRUE(has(refusal([&] { frames_of(file().string(), options); }),
-                  {"--topics: /right/image_rect is no depth or disparity image of /left/image_rect"}));
-  for (const char* topics : {"/left/image_rect", "a,b,c,d", "a,,c"}) {
+                  {"frame that cannot be read", "/right/image_rect", "mono8, expected depths"}));
+  for (const char* topics : {"/left/image_rect", "a,b,c,d", "a,,c", "a,b,a"}) {
     options.topics = topics;
     EXPECT_TRUE(has(refusal([&] { frames_of(file().string(), options); }),
                     {topics, "expected LEFT,RIGHT, IMAGE,DEPTH or LEFT,RIGHT,DEPTH"}));
