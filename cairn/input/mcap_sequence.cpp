@@ -8,6 +8,7 @@
 #include <cairn/io/frame_names.hpp>
 #include <cairn/io/raster.hpp>
 #include <iterator>
+#include <string_view>
 #include <type_traits>
 
 #include <cairn/input/frame_list.hpp>
@@ -261,7 +262,7 @@ class McapSequence : public SourceSequence {
       if (side == 1 && has_depth_) {
         waiting.depth = depth_in(message, stamp, waiting.frame_id);
       } else {
-        waiting.image = raster_in(message, sides_[side].channel, stamp, waiting.frame_id);
+        waiting.image = raster_in(message, sides_[side].channel.type, stamp, waiting.frame_id);
       }
     } catch (const Error& error) {
       waiting.trouble = error.what();
@@ -269,9 +270,9 @@ class McapSequence : public SourceSequence {
     if (!first_stamps_[side]) first_stamps_[side] = stamp;
     pairing_.push(side, stamp, std::move(waiting));
   }
-  static io::Raster raster_in(const ros::McapMessage& message, const ros::McapChannel& channel, Stamp& stamp,
+  static io::Raster raster_in(const ros::McapMessage& message, std::string_view type, Stamp& stamp,
                               std::string& frame_id) {
-    if (channel.type == ros::CompressedImage::kType) {
+    if (type == ros::CompressedImage::kType) {
       const auto image = ros::decode<ros::CompressedImage>(message.bytes);
       stamp = stamp_of(image.header, message);
       frame_id = ros::camera_of(image.header);
@@ -300,7 +301,8 @@ class McapSequence : public SourceSequence {
     try {
       Stamp stamp;
       std::string unused;
-      io::Raster image = raster_in(message, is_right ? *checking_ : ros::McapChannel(), stamp, unused);
+      const std::string_view type = is_right ? std::string_view(checking_->type) : ros::Image::kType;
+      io::Raster image = raster_in(message, type, stamp, unused);
       (is_right ? rights_ : greys_).push(stamp, std::move(image));
     } catch (const Error& error) {
       // Colour contains grey, up to rounding.

@@ -125,14 +125,9 @@ RosDepth depth_of(const ros::DisparityImage& image, const Pool& pool) {
   return {values_of<float>(image.image, seen, pool), RosDepth::FocalAndBaseline{image.f, std::abs(image.t)}};
 }
 
-void set_camera(io::Calibration& calibration, const ros::CameraInfo& info, const std::string& topic,
-                std::optional<Size> images) {
-  calibration.one_camera = ros::one_camera_of(info, is_raw(topic), images);
-}
-
 void set_cameras(io::Calibration& calibration, const ros::CameraInfo& left, const ros::CameraInfo* right,
                  const std::string& topic, std::optional<Size> images) {
-  set_camera(calibration, left, topic, images);
+  calibration.one_camera = ros::one_camera_of(left, is_raw(topic), images);
   if (right != nullptr && right->p[3] != 0) calibration.rig = ros::rig_of(left, *right, images);
 }
 

@@ -38,12 +38,9 @@ RosDepth depth_of(const ros::CompressedImage& image, const Pool& pool);
 /// Disparities, counted from the principal points. Values below min_disparity are holes.
 RosDepth depth_of(const ros::DisparityImage& image, const Pool& pool);
 
-/// The camera of an image with depth, by its camera_info: of a raw image, if its topic says so, K instead of P. Throws
-/// Error if the message is of images of another size.
-void set_camera(io::Calibration& calibration, const ros::CameraInfo& info, const std::string& topic,
-                std::optional<Size> images = std::nullopt);
-/// The same, with the baseline where the right camera's P has one: for right images that check depths. `right`: nullptr
-/// if unknown.
+/// The camera of an image with depth, by its camera_info: of a raw image, if its topic says so, K instead of P. `right`:
+/// of the right image that checks the depth, nullptr if unknown; the rig has its baseline where its P has one. Throws
+/// Error if a message is of images of another size.
 void set_cameras(io::Calibration& calibration, const ros::CameraInfo& left, const ros::CameraInfo* right,
                  const std::string& topic, std::optional<Size> images = std::nullopt);
 /// The topics of an image and its depth, and the frame_id of their headers.

@@ -109,6 +109,13 @@ auto on_topic(const std::string& topic, const Work& work) {
   }
 }
 
+io::LoadedPair pair_of(const io::Raster& left, const io::Raster& right, const std::string& right_topic,
+                       int least_bits, const Pool& pool) {
+  io::LoadedPair pair = on_topic(right_topic, [&] { return io::pair_of(left, right, pool, least_bits); });
+  pair.right.rgb = {};
+  return pair;
+}
+
 }  // namespace
 
 io::Raster raster_of(const ros::Image& image) {
@@ -150,9 +157,13 @@ io::LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic
                            const std::string& right_topic, int least_bits, const Pool& pool) {
   const io::Raster first = on_topic(left_topic, [&] { return raster_of(left); });
   const io::Raster second = on_topic(right_topic, [&] { return raster_of(right); });
-  io::LoadedPair pair = on_topic(right_topic, [&] { return io::pair_of(first, second, pool, least_bits); });
-  pair.right.rgb = {};
-  return pair;
+  return pair_of(first, second, right_topic, least_bits, pool);
+}
+
+io::LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic, const io::Raster& right,
+                           const std::string& right_topic, int least_bits, const Pool& pool) {
+  const io::Raster first = on_topic(left_topic, [&] { return raster_of(left); });
+  return pair_of(first, right, right_topic, least_bits, pool);
 }
 
 }  // namespace cairn::input

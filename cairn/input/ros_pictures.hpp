@@ -23,5 +23,8 @@ io::Raster raster_of(const ros::Image& image);
 /// Error, prefixed with the topic.
 io::LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic, const ros::Image& right,
                            const std::string& right_topic, int least_bits, const Pool& pool);
+/// The same of a right image whose pixels are known.
+io::LoadedPair pictures_of(const ros::Image& left, const std::string& left_topic, const io::Raster& right,
+                           const std::string& right_topic, int least_bits, const Pool& pool);
 
 }  // namespace cairn::input

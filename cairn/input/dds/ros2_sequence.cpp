@@ -313,8 +313,8 @@ class Ros2Sequence : public SourceSequence {
       calibration_.suit(size);
     } else if (last_infos_[0]) {
       try {
-        const bool has_both = is_checked() && last_infos_[1];
-        set_cameras(calibration_.says, *last_infos_[0], has_both ? &*last_infos_[1] : nullptr, topics_[0],
+        const bool has_right = is_checked() && last_infos_[1];
+        set_cameras(calibration_.says, *last_infos_[0], has_right ? &*last_infos_[1] : nullptr, topics_[0],
                     size);
       } catch (const Error& error) {
         throw Error(source_ + ": " + error.what());
@@ -365,7 +365,7 @@ class Ros2Sequence : public SourceSequence {
     const std::optional<io::Raster> checking = right_at(stamp, io::number_text(index));
     const bool has_right = !is_depth || checking;
     io::LoadedPair images = checking
-                                ? io::pair_of(raster_of(left), *checking, pool_, bits_)
+                                ? pictures_of(left, topics_[0], *checking, topics_[2], bits_, pool_)
                                 : pictures_of(left, topics_[0], is_depth ? left : pair.right.value.image(),
                                               topics_[is_depth ? 0 : 1], bits_, pool_);
     bits_ = images.bits;
