@@ -99,18 +99,23 @@ def run_python(blocks, folder, environment):
                                          capture_output=True, text=True, timeout=120))
 
 
-def check_declarations(block, compiler, source):
-    """The compiler reports a repeated declaration as redundant; one that differs is not reported."""
+def check_declarations(blocks, compiler, source):
+    """The compiler reports a repeated declaration as redundant; one that differs is not reported. Several blocks are
+    compiled at once, and one by one if that is not right."""
+    text = "".join(block.text for block in blocks)
     code = "#include <cairn/cairn.hpp>\n" + "".join(
-        f"#include <{name}>\n" for name in re.findall(r"//.*?(cairn/\w+(?:/\w+)*\.hpp)", block.text))
-    code += f"namespace cairn {{\n{block.text}}}\n"
+        f"#include <{name}>\n" for name in re.findall(r"//.*?(cairn/\w+(?:/\w+)*\.hpp)", text))
+    code += "".join(f"namespace cairn {{\n{block.text}}}\n" for block in blocks)
     run = subprocess.run([compiler, "-std=c++20", "-fsyntax-only", "-Wredundant-decls", f"-I{source}", "-xc++", "-"],
                          input=code, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
     known = len(re.findall(r"redundant redeclaration of", run.stderr))
-    shown = len(re.sub(r"//.*", "", block.text).split(";")) - 1
-    if run.returncode == 0 and shown > 0 and known == shown:
-        return None
-    return f"{block.place}: {shown} declarations shown, {known} of them in the headers\n{block.text}\n{run.stderr}"
+    shown = [len(re.sub(r"//.*", "", block.text).split(";")) - 1 for block in blocks]
+    if run.returncode == 0 and all(shown) and known == sum(shown):
+        return []
+    if len(blocks) > 1:
+        return [failure for block in blocks for failure in check_declarations([block], compiler, source)]
+    return [f"{block.place}: {shown[0]} declarations shown, {known} of them in the headers\n{block.text}\n{run.stderr}"
+            for block in blocks]
 
 
 def run_examples(build, source, environment):
@@ -137,6 +142,7 @@ def main(source, build, compiler):
     environment = {**os.environ, "PATH": f"{build}:{os.environ['PATH']}", "PYTHONPATH": f"{build}/python"}
     has_module = any((build / "python/cairn").glob("*.so"))
     failures, counts = [], {"sh": 0, "python": 0, "cpp": 0}
+    declarations = []
     for page in pages(source):
         checked = [b for b in blocks_of(page) if b.is_checked_here and b.language in counts]
         python = [b for b in checked if b.language == "python"] if has_module else []
@@ -151,10 +157,11 @@ def main(source, build, compiler):
                 scene(source, folder)
             results = [run_shell(b, folder, environment) for b in checked if b.language == "sh"]
             results += [run_python(python, folder, environment)] if python else []
-            results += [check_declarations(b, compiler, source) for b in checked if b.language == "cpp"]
         failures += [r for r in results if r]
+        declarations += [b for b in checked if b.language == "cpp"]
         for block in checked:
             counts[block.language] += block.language != "python" or has_module
+    failures += check_declarations(declarations, compiler, source)
     failures += [r for r in run_examples(build, source, environment) if r]
     print("\n".join(failures))
     print(", ".join(f"{n} blocks of {language}" for language, n in counts.items()),
