@@ -42,6 +42,7 @@
 #include <cairn/objects/measure.hpp>             // measure
 #include <cairn/objects/locate.hpp>              // locate
 #include <cairn/objects/refine_objects.hpp>      // refine_objects
+#include <cairn/objects/floor_probability.hpp>       // floor_probability
 #include <cairn/objects/obstacles.hpp>               // label_obstacles
 #include <cairn/objects/sky.hpp>                     // reject_sky
 #include <cairn/pipeline/config.hpp>             // Config, presets, options

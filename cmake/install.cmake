@@ -25,7 +25,7 @@ set(private_headers
   scene/floor_search scene/plane_fit scene/plane_through_pairs
   regions/gradient_threshold regions/growing_regions regions/percent regions/runs regions/superpixel_regions
   regions/split_floor regions/surfaces_behind
-  objects/object_match objects/ranks pipeline/match_and_check pipeline/methods pipeline/option_walk pipeline/scenes_ahead diagnosis/robust_fit
+  objects/object_match objects/obstacle_rows objects/ranks pipeline/match_and_check pipeline/methods pipeline/option_walk pipeline/scenes_ahead diagnosis/robust_fit
   sequence/assign sequence/changes sequence/kalman sequence/landmark_geometry sequence/motion_fit sequence/twist
   io/calibration_forms io/frame_names io/load_module io/raster io/read_file io/sha256 io/yaml_text
   device/careful_device device/engine device/module

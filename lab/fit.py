@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Fits the trees that score regions, those that choose planes of disparity, and those that correct the disparity of an object
-(cairn/fitted/*.bin).
+"""Fits the trees that score regions, those that choose planes of disparity, those that recognise the floor, and those that
+correct the disparity of an object (cairn/fitted/*.bin).
 
 fit.py TOOL WORLDS [--data DATA] [--yardstick FOLDER] [--folds N] [--work FOLDER] [--hints FILE] [--out FOLDER] [--page FILE]
 It needs the network that fit_hints.py writes to the work folder, and worlds that this network has not seen: trees
 fitted to hints of a network that has would trust them too much. fit.py TOOL WORLDS --ablation FILE: refits without
 each kind of cue in turn, and reports the gain of each. fit.py TOOL WORLDS --distances [--out FOLDER]: fits only the trees
-that correct disparities, to the objects that the library finds. --planes: fits only the trees that choose planes, likewise.
+that correct disparities, to the objects that the library finds. --planes, --floor: fits only the trees that
+choose planes or that recognise the floor, likewise.
 
-Gradient boosting fits three scores and a correction: whether two neighbouring regions belong to the same object, on the pairs that occur
-while the merge tree grows; whether a region is a whole object, on the regions of such trees; and how far
-the disparity of a found object is from the true one. Which pairs and regions occur depends on the first score, so it is fitted twice. Regions always come from trees grown by a fit that has
+Gradient boosting fits four scores and a correction: whether two neighbouring regions belong to the same object, on the pairs that occur
+while the merge tree grows; whether a region is a whole object, on the regions of such trees; whether a group of pixels lies on a
+plane, and whether it shows the floor; and how far the disparity of a found object is from the true one. The floor is fitted
+to what the library finds, with refined disparities, so build the tool again before it. Which pairs and regions occur depends on the first score, so it is fitted twice. Regions always come from trees grown by a fit that has
 not seen their scene (cross-validation in `--folds` folds); so does every figure printed for the fit set. The yardstick and
 the real frames are only reported. Everything is seeded: the same frames give the same trees.
 """
@@ -35,6 +37,7 @@ PAIR_TREES, PAIR_DEPTH = 80, 5
 REGION_TREES, REGION_DEPTH = 400, 4
 BIAS_TREES, BIAS_DEPTH = 60, 4
 PLANE_TREES, PLANE_DEPTH = 100, 5
+FLOOR_TREES, FLOOR_DEPTH = 150, 6
 PLANES_KEPT = 0.3  # share of all planes that were judged
 DOUBT = 0.08  # px, kDoubt of cairn/objects/refine_objects.cpp
 MOST_CORRECTION = 1  # px, kMaxBias there
@@ -180,7 +183,7 @@ class Fitting:
     def __init__(self, tool, work, hints, folds, sets):
         self.tool, self.work, self.hints, self.folds = tool, work, hints, folds
         names = subprocess.run([tool, "--names"], capture_output=True, text=True, check=True).stdout
-        self.pair_features, self.region_features, self.bias_features, self.plane_features = (
+        self.pair_features, self.region_features, self.bias_features, self.plane_features, self.floor_features = (
             part.splitlines() for part in names.split("\n\n"))
         self.gains = {}
         self.without = ()
@@ -208,7 +211,8 @@ class Fitting:
             heads.append(head)
             values.append(all_[:, 3:])
         values = np.concatenate(values)
-        names = {"regions": self.region_features, "bias": self.bias_features, "planes": self.plane_features}.get(
+        names = {"regions": self.region_features, "bias": self.bias_features, "planes": self.plane_features,
+                 "floor": self.floor_features}.get(
             name, self.pair_features)
         for i, feature in enumerate(names):
             # Features from hints count as cues of the hints only.
@@ -272,6 +276,16 @@ class Fitting:
         model.write(self.model("right_plane", "all"))
         self.gains["right_plane"] = shares_of(model.gains, self.plane_features)
         say(f"planes: {len(head)} of them")
+
+    def fit_floor(self, trees):
+        """trees(i): the files of job i. The label is the share of a group's pixels that show the floor."""
+        self.run(trees, "--floor", self.work / "floor@")
+        head, features = self.records("floor", len(self.floor_features))
+        weights = self.weight[head[:, 0].astype(int)] * head[:, 2]
+        model = fitted(head[:, 1], weights / weights.mean(), features, (FLOOR_TREES, FLOOR_DEPTH, 5, 0.1))
+        model.write(self.model("shows_floor", "all"))
+        self.gains["shows_floor"] = shares_of(model.gains, self.floor_features)
+        say(f"floor: {len(head)} groups")
 
     def fit_bias(self, trees, sequences, checked_jobs):
         """Fits the trees that correct the disparities of found objects. Returns a table of the errors before and after:
@@ -496,6 +510,7 @@ def main():
     parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
     parser.add_argument("--distances", action="store_true", help="fit only the trees that correct disparities")
     parser.add_argument("--planes", action="store_true", help="fit only the trees that choose planes of disparity")
+    parser.add_argument("--floor", action="store_true", help="fit only the trees that recognise the floor")
     parser.add_argument("--distances-page", type=pathlib.Path,
                         help="where their report is written (docs/fitted_distances.md)")
     parser.add_argument("--ablation", type=pathlib.Path, help="where the ablation report is written")
@@ -517,11 +532,15 @@ def main():
         nodes = [(int(f), int(b), float(v)) for f, b, v in (line.split() for line in lines[2:] if line)]
         fitted_files.write_trees(arguments.out / f"{kind}.bin", float(lines[0].split()[0]), [int(v) for v in lines[1].split()], nodes)
 
-    fitting.of_library = arguments.distances or arguments.planes
-    if arguments.planes:
-        fitting.fit_planes(lambda i: ("-", "-"))
-        print(gains_table(fitting, "right_plane", "feature"))
-        return write_fitted("right_plane")
+    fitting.of_library = arguments.distances or arguments.planes or arguments.floor
+    for wanted, fit, kind in ((arguments.planes, fitting.fit_planes, "right_plane"),
+                              (arguments.floor, fitting.fit_floor, "shows_floor")):
+        if wanted:
+            fit(lambda i: ("-", "-"))
+            print(gains_table(fitting, kind, "feature"))
+            write_fitted(kind)
+    if arguments.planes or arguments.floor:
+        return None
     if arguments.distances:
         distances = fitting.fit_bias(lambda i, jobs: ("-", "-"), tracked, checked)
     else:

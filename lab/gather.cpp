@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // fitting --names: prints the names of the features.
-// fitting JOBS [--inputs FILE] [--pairs FILE] [--regions FILE] [--bias FILE] [--planes FILE] [--min-score S]: gathers the data
-// for fit_hints.py and fit.py, and measures how well the result performs.
+// fitting JOBS [--inputs FILE] [--pairs FILE] [--regions FILE] [--bias FILE] [--planes FILE] [--floor FILE] [--min-score S]:
+// gathers the data for fit_hints.py and fit.py, and measures how well the result performs.
 //
 // Each line of JOBS is the folder of a frame, `colour` or `grey`, and three files: a fitted network and two
 // sets of fitted trees; `-` for the library's. For each line it prints what was found in the frame. The FILEs
@@ -12,8 +12,12 @@
 // number, its greatest IoU with a true object, whether the truth is partial, and the features; for each object
 // that was found, the job's number, the true disparity minus the measured one, the latter's px per metre of
 // depth, and the features of its bias; for each plane that a group of pixels may take, the job's number, the share
-// of pixels that are right then, their number, and the features; for the inputs, see record_input().
+// of pixels that are right then, their number, and the features; for each group of pixels that may show the floor,
+// the job's number, the share that does, their number (far ones count less), and the features, of
+// the frame and of a close-up of its largest object; for the inputs, see record_input().
 #include <cairn/cairn.hpp>
+#include <cairn/objects/floor_probability.hpp>
+#include <cairn/objects/sky.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <cairn/regions/choose_objects.hpp>
 #include <cairn/timing/clock.hpp>
@@ -74,6 +78,7 @@ struct Files {
   std::ofstream inputs;
   std::ofstream bias;
   std::ofstream planes;
+  std::ofstream floor;
 };
 
 template <std::size_t N>
@@ -271,6 +276,125 @@ void record_plane(std::ofstream& file, int job, const JudgedPlane& judged, View<
            judged.features);
 }
 
+/// A part of a frame and of its truth.
+struct Part {
+  FrameInput in;
+  std::optional<StereoRig> rig;
+  int num_disparities;
+  View<const TruthId> objects;
+  View<const float> truth_px;
+  View<const Gray> ground;
+};
+
+Part part_of(const TrueFrame& frame, bool grey, Rect window) {
+  const io::LoadedImage& left = frame.images.left;
+  const io::LoadedImage& right = frame.images.right;
+  Part part{{{left.gray.view().sub(window),
+              grey || left.rgb.empty() ? View<const Rgb>{} : left.rgb.view().sub(window)},
+             right.gray.view().sub(window)},
+            frame.rig,
+            std::min(frame.num_disparities, window.width),
+            frame.objects.view().sub(window),
+            frame.truth_px.view().sub(window),
+            frame.ground.view().sub(window)};
+  if (part.rig) {
+    part.rig->cx_px -= static_cast<float>(window.x);
+    part.rig->cy_px -= static_cast<float>(window.y);
+  }
+  return part;
+}
+
+/// The window, at least 140 px wide and of the image's proportions, of which the largest object fills two fifths: what a
+/// robot sees that comes close. The whole image without an object.
+Rect close_up(View<const TruthId> objects) {
+  constexpr double kFilled = 0.4;
+  constexpr int kMinWidth = 140;
+  std::map<TruthId, std::pair<std::int64_t, Rect>> seen;
+  for (int y = 0; y < objects.height(); ++y) {
+    for (int x = 0; x < objects.width(); ++x) {
+      const TruthId id = objects(x, y);
+      if (id == TruthId::none || id == TruthId::dont_care) continue;
+      auto& [pixels, box] = seen[id];
+      ++pixels;
+      box = united(box, {x, y, 1, 1});
+    }
+  }
+  const Size size = objects.size();
+  if (seen.empty()) return {0, 0, size.width, size.height};
+  const auto& [pixels, box] = std::max_element(seen.begin(), seen.end(), [](const auto& a, const auto& b) {
+                                return a.second.first < b.second.first;
+                              })->second;
+  const double scale = std::sqrt(static_cast<double>(pixels) / kFilled / static_cast<double>(size.area()));
+  const double kept = std::clamp(scale, static_cast<double>(kMinWidth) / size.width, 1.0);
+  const int width = static_cast<int>(kept * size.width);
+  const int height = static_cast<int>(kept * size.height);
+  return {std::clamp(box.x + (box.width - width) / 2, 0, size.width - width),
+          std::clamp(box.y + (box.height - height) / 2, 0, size.height - height), width, height};
+}
+
+/// The fitted numbers of a job.
+struct Models {
+  const HintNetwork& network;
+  const FittedTrees& same_thing;
+  const FittedTrees& whole_object;
+};
+
+void record_floor(std::ofstream& file, int job, Part part, const Models& by) {
+  constexpr float kFar_m = 12;
+  constexpr double kWeightOfFar = 0.3;
+  // Of the floor from the plane that was found, as a share of the camera's height: beyond, that is another one.
+  constexpr float kMaxOff = 0.25F;
+  Config config;
+  config.match.num_disparities = part.num_disparities;
+  const Exec exec;
+  StageClock stage(exec);
+  RegionCandidates cut = superpixel_candidates(part.in, {part.rig, config, exec}, by.network, stage);
+  StereoResult& stereo = cut.match.stereo;
+  const LeftImage& left = part.in.left;
+  const View<const RegionId> superpixels = cut.superpixels.labels;
+  const MergeTree tree = grow_merge_tree(cut.superpixels, cut.cues(left), by.same_thing, exec);
+  const ChosenObjects chosen =
+      choose_objects(tree, by.whole_object, limits_of(config.objects, superpixels.size()), exec);
+  const Segmentation regions = object_regions(cut.superpixels, chosen, stereo.disparity, exec);
+  const Objects objects = measure(regions.labels, chosen.scores, stereo.disparity, left, exec);
+  Image<float> confidence =
+      estimate_confidence(cut.match.matches, stereo.disparity, confidence_model(config.match.method), exec);
+  RefinedDisparity refined =
+      refine_disparity({cut.superpixels, tree, chosen, cut.cues(left), confidence}, plane_classifier(), exec);
+  const SkyCues of_sky{left.gray, confidence, stereo.ground, superpixels, objects.labels};
+  const DisparityMap disparity = reject_sky(std::move(stereo.disparity), of_sky, part.rig, exec);
+  confidence = without_holes(std::move(confidence), disparity.reject);
+  refined = without_sky(std::move(refined), disparity.reject);
+  const ObstacleCues cues{disparity,      cut.surface_disparity_px, confidence,
+                          stereo.ground,  cut.background,           superpixels,
+                          objects.labels, refined.disparity_px,     refined.confidence};
+  const FloorGroups groups = group_by_floor(cues, cut.hints, part.rig, config.ground, exec);
+  std::vector<std::array<double, 2>> known(groups.features.size());  // weights: of all, of floor
+  for (int y = 0; y < superpixels.height(); ++y) {
+    for (int x = 0; x < superpixels.width(); ++x) {
+      if (groups.kinds(x, y) == FloorKind::not_judged || part.objects(x, y) == TruthId::dont_care) continue;
+      const float infinity_px = part.rig ? -part.rig->doffs_px : 0;
+      const float d = part.truth_px(x, y) - infinity_px;
+      const float off =
+          std::abs(d / (stereo.ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y)) -
+                        infinity_px) -
+                   1);
+      const bool is_floor = part.ground(x, y) == 255;
+      if (is_floor && !(off <= kMaxOff)) continue;
+      const bool is_far = !part.rig || !(d * kFar_m > part.rig->focal_px * part.rig->baseline_m);
+      const double weight = is_far ? kWeightOfFar : 1;
+      auto& [all, floor] = known[FloorGroups::group(superpixels(x, y), groups.kinds(x, y))];
+      all += weight;
+      floor += is_floor ? weight : 0;
+    }
+  }
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto [all, floor] = known[i];
+    if (all > 0 && groups.pixels[i] > 0)
+      record(file, job, static_cast<float>(floor / all), static_cast<float>(all), groups.features[i]);
+  }
+}
+
 void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, const ChosenObjects& chosen,
                  double milliseconds) {
   int right = 0;
@@ -294,14 +418,21 @@ struct Job {
   int number = 0;
   std::string folder;
   bool grey = false;
-  const HintNetwork& network;
-  const FittedTrees& same_thing;
-  const FittedTrees& whole_object;
+  Models by;
 };
 
 void work(const Job& of, float min_score, Files& files) {
-  const auto& [job, folder, grey, network, same_thing, whole_object] = of;
+  const auto& [job, folder, grey, by] = of;
+  const auto& [network, same_thing, whole_object] = by;
   const TrueFrame frame = load_true_frame(io::find_frames(folder).front());
+  if (files.floor.is_open()) {
+    std::cout << job << '\n';
+    if (frame.truth_px.empty() || frame.partial || frame.ground.empty()) return;
+    const Size whole = frame.objects.size();
+    record_floor(files.floor, job, part_of(frame, grey, {0, 0, whole.width, whole.height}), by);
+    record_floor(files.floor, job, part_of(frame, grey, close_up(frame.objects)), by);
+    return;
+  }
   Config config;
   config.match.num_disparities = frame.num_disparities;
   const Exec exec;
@@ -318,7 +449,7 @@ void work(const Job& of, float min_score, Files& files) {
   std::vector<Pair> pairs;
   JudgedPair on_judged;
   if (files.pairs.is_open())
-    on_judged = [&](std::int32_t a, std::int32_t b, const MergeFeatures& by) { pairs.push_back({a, b, by}); };
+    on_judged = [&](std::int32_t a, std::int32_t b, const MergeFeatures& f) { pairs.push_back({a, b, f}); };
   const double start = timing::now_ms(CLOCK_THREAD_CPUTIME_ID);
   const MergeTree tree = grow_merge_tree(superpixels, cut.cues(in.left), same_thing, exec, on_judged);
   config.objects.min_confidence = min_score;
@@ -350,7 +481,7 @@ void work(const Job& of, float min_score, Files& files) {
 }
 
 /// The features, one per line: those of pairs, an empty line, those of regions, an empty line, those of the
-/// bias, an empty line, those of planes.
+/// bias, an empty line, those of planes, an empty line, those of the floor.
 int print_names() {
   for (const std::string_view name : merge_feature_names()) std::cout << name << '\n';
   std::cout << '\n';
@@ -359,6 +490,8 @@ int print_names() {
   for (const std::string_view name : bias_feature_names()) std::cout << name << '\n';
   std::cout << '\n';
   for (const std::string_view name : plane_feature_names()) std::cout << name << '\n';
+  std::cout << '\n';
+  for (const std::string_view name : floor_feature_names()) std::cout << name << '\n';
   return 0;
 }
 
@@ -374,6 +507,7 @@ int run(std::span<char*> arguments) {
     if (option == "--inputs") files.inputs.open(value, std::ios::binary);
     if (option == "--bias") files.bias.open(value, std::ios::binary);
     if (option == "--planes") files.planes.open(value, std::ios::binary);
+    if (option == "--floor") files.floor.open(value, std::ios::binary);
     if (option == "--min-score") min_score = std::stof(value);
   }
   std::ifstream jobs(arguments[1]);
@@ -385,8 +519,11 @@ int run(std::span<char*> arguments) {
   std::string same_thing;
   std::string whole_object;
   for (int job = 0; jobs >> folder >> colour >> hints >> same_thing >> whole_object; ++job) {
-    work({job, folder, colour == "grey", networks.at(hints, hint_network()),
-          trees.at(same_thing, merge_classifier()), trees.at(whole_object, object_classifier())},
+    work({job,
+          folder,
+          colour == "grey",
+          {networks.at(hints, hint_network()), trees.at(same_thing, merge_classifier()),
+           trees.at(whole_object, object_classifier())}},
          min_score, files);
   }
   return 0;

@@ -33,9 +33,11 @@ TrueFrame load_true_frame(const io::FrameFiles& files) {
   frame.partial = truth.partial;
   if (truth.objects) frame.objects = io::truth_ids(io::load_labels(*truth.objects));
   if (truth.disparity) frame.truth_px = io::load_disparity(*truth.disparity);
+  if (truth.ground) frame.ground = io::load_picture(*truth.ground).gray;
   if (truth.occlusion) frame.hidden = io::load_hidden(*truth.occlusion);
   require_size(frame.objects, frame);
   require_size(frame.truth_px, frame);
+  require_size(frame.ground, frame);
   require_size(frame.hidden, frame);
   return frame;
 }

@@ -26,6 +26,7 @@ struct TrueFrame {
   Image<TruthId> objects;      // empty if unknown
   bool partial = false;        // not every object is labelled
   Image<float> truth_px;       // empty if unknown
+  Image<Gray> ground;          // 255 = floor; empty if unknown
   Image<std::uint8_t> hidden;  // 1 = not visible to the right camera; empty if unknown
 };
 

@@ -21,6 +21,7 @@ std::span<const std::byte> same_thing();
 std::span<const std::byte> whole_object();
 std::span<const std::byte> disparity_bias();
 std::span<const std::byte> right_plane();
+std::span<const std::byte> shows_floor();
 
 /// The arrays of a file, one after the other, without copying. A file begins with "cairn 1 " and four letters of its
 /// kind; each array is the number of its elements (uint32), the elements, and zeros up to a multiple of 4 bytes.

@@ -36,37 +36,31 @@ inline void look_behind(const Backdrop& backdrop, int y, int width, const Backdr
   }
 }
 
-inline void sum_floor(const float* surface_disparity_px, const float* free_floor_px, float margin, int width,
-                      std::uint64_t* CAIRN_RESTRICT up_to) {
+inline void mark_floor(const float* surface_disparity_px, const float* free_floor_px, float margin, int width,
+                       float* CAIRN_RESTRICT floor_probability) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   for (int x = 0; x < width; ++x) {
-    const float seen = surface_disparity_px[x];
-    const std::uint64_t known = seen == seen ? std::uint64_t{1} << 32U : 0;
-    const std::uint64_t on_floor = std::abs(seen - free_floor_px[x]) <= margin ? 1 : 0;
-    up_to[x + 1] = known + on_floor;
+    const float off = std::abs(surface_disparity_px[x] - free_floor_px[x]);
+    floor_probability[x] = off <= margin ? 1.0F : kNone;
   }
-  // A sum waits for each addition, so it is not vectorised.
-  up_to[0] = 0;
-  for (int x = 0; x < width; ++x) up_to[x + 1] += up_to[x];
 }
 
 inline void label(const SpaceRow& given, float margin, int width, ObstacleLabel* CAIRN_RESTRICT out) {
   constexpr float kRatherRight = 0.5F;
   const SpaceRow row = given;
   for (int x = 0; x < width; ++x) {
-    const float floor = row.free_floor[x];
-    // A hole in a superpixel of floor is floor; a pixel with a disparity off the floor is not.
-    const float seen = row.seen[x] == row.seen[x] ? row.seen[x] : floor;
-    const bool is_floor = (row.in_floor[x] != 0) & (std::abs(seen - floor) <= margin);
+    const float likely = row.floor_probability[x];
     const bool is_in_front =
         (row.disparity[x] - row.barrier[x] > margin) & (row.confidence[x] >= kRatherRight);
-    const ObstacleLabel alone = is_floor      ? ObstacleLabel::floor
-                                : is_in_front ? ObstacleLabel::obstacle
-                                              : ObstacleLabel::unknown;
+    const bool is_obstacle = (likely < kUnlikelyFloor) | (!(likely == likely) & is_in_front);
+    const ObstacleLabel alone = likely >= kLikelyFloor ? ObstacleLabel::floor
+                                : is_obstacle          ? ObstacleLabel::obstacle
+                                                       : ObstacleLabel::unknown;
     out[x] = row.object[x] != ObjectId::none ? ObstacleLabel::obstacle : alone;
   }
 }
 
-inline constexpr ObstacleKernels kSpaceKernels{look_behind, sum_floor, label};
+inline constexpr ObstacleKernels kSpaceKernels{look_behind, mark_floor, label};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -30,10 +30,8 @@ struct BackdropRow {
 struct SpaceRow {
   const ObjectId* object;
   const float* disparity;
-  const float* seen;
   const float* confidence;
-  const std::uint8_t* in_floor;  // whether the pixel's superpixel is floor
-  const float* free_floor;
+  const float* floor_probability;  // NaN: unknown
   const float* barrier;
 };
 
@@ -41,9 +39,9 @@ struct SpaceRow {
 struct ObstacleKernels {
   /// For the pixels of row y.
   void (*look_behind)(const Backdrop& backdrop, int y, int width, const BackdropRow& out);
-  /// Prefix sums of a row: up_to[x] = pixels with a disparity · 2³² + pixels on the floor, of the first x.
-  void (*sum_floor)(const float* surface_disparity_px, const float* free_floor_px, float margin, int width,
-                    std::uint64_t* up_to);
+  /// 1 for disparities within the margin of the floor, else NaN.
+  void (*mark_floor)(const float* surface_disparity_px, const float* free_floor_px, float margin, int width,
+                     float* floor_probability);
   /// As label_obstacles() defines it.
   void (*label)(const SpaceRow& row, float margin, int width, ObstacleLabel* out);
 };

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cairn/core/parallel.hpp>
 #include <cairn/objects/obstacle_kernels.hpp>
+#include <cairn/objects/obstacle_rows.hpp>
 #include <cairn/objects/obstacles.hpp>
-#include <cairn/regions/runs.hpp>
 #include <cairn/stereo/islands.hpp>
 #include <cmath>
 #include <limits>
@@ -13,124 +13,8 @@
 namespace cairn {
 namespace {
 
-constexpr int kGrain = 64;              // rows
-constexpr std::int64_t kKnownPart = 5;  // a fifth of a superpixel
+constexpr int kGrain = 64;  // rows
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-kernels::Backdrop backdrop_of(const ObstacleCues& cues, const std::optional<StereoRig>& rig) {
-  const auto& planes = cues.background.planes;
-  return {cues.ground.plane,
-          {planes.begin() + (cues.background.has_floor ? 1 : 0), planes.end()},
-          rig ? rig->doffs_px : 0.0F};
-}
-
-/// The disparities of floor and walls behind the pixels of a row.
-class BackgroundRow {
- public:
-  BackgroundRow(const kernels::Backdrop& backdrop, int width, const Exec& exec)
-      : run_(kernels::obstacle_kernels(exec)),
-        backdrop_(backdrop),
-        free_floor_(slot(width)),
-        wall_(slot(width)),
-        barrier_(slot(width)) {}
-
-  /// See kernels::BackdropRow for the disparities.
-  void look_at(int y) {
-    run_.look_behind(backdrop_, y, static_cast<int>(wall_.size()),
-                     {free_floor_.data(), wall_.data(), barrier_.data()});
-  }
-  [[nodiscard]] const float* free_floor_px() const { return free_floor_.data(); }
-  [[nodiscard]] const float* wall_px() const { return wall_.data(); }
-  [[nodiscard]] const float* barrier_px() const { return barrier_.data(); }
-
- private:
-  const kernels::ObstacleKernels& run_;
-  const kernels::Backdrop& backdrop_;
-  std::vector<float> free_floor_;
-  std::vector<float> wall_;
-  std::vector<float> barrier_;
-};
-
-/// The disparities of a row, with the likely ones of the refined in their place.
-class SeenRow {
- public:
-  explicit SeenRow(const ObstacleCues& cues)
-      : cues_(cues),
-        surfaces_(cues.surface_disparity_px.empty() ? cues.disparity.disparity_px.view()
-                                                    : cues.surface_disparity_px),
-        all_trusted_(cues.confidence.empty() ? slot(surfaces_.width()) : 0, 1.0F) {
-    if (cues.refined_px.empty()) return;
-    for (std::vector<float>* const buffer : {&own_disparity_, &own_surface_, &own_confidence_})
-      buffer->resize(slot(surfaces_.width()));
-  }
-  void look_at(int y) {
-    disparity_ = cues_.disparity.disparity_px.row(y);
-    surface_ = surfaces_.row(y);
-    confidence_ = cues_.confidence.empty() ? all_trusted_.data() : cues_.confidence.row(y);
-    if (cues_.refined_px.empty()) return;
-    const float* const refined = cues_.refined_px.row(y);
-    const float* const likely = cues_.refined_confidence.row(y);
-    for (int x = 0; x < surfaces_.width(); ++x) {
-      const bool better = likely[x] >= kLikelyRefined;
-      own_disparity_[slot(x)] = better ? refined[x] : disparity_[x];
-      own_surface_[slot(x)] = better ? refined[x] : surface_[x];
-      own_confidence_[slot(x)] = better ? likely[x] : confidence_[x];
-    }
-    disparity_ = own_disparity_.data();
-    surface_ = own_surface_.data();
-    confidence_ = own_confidence_.data();
-  }
-  [[nodiscard]] const float* disparity_px() const { return disparity_; }
-  [[nodiscard]] const float* surface_px() const { return surface_; }
-  [[nodiscard]] const float* confidence() const { return confidence_; }
-
- private:
-  const ObstacleCues& cues_;
-  View<const float> surfaces_;
-  std::vector<float> all_trusted_;
-  std::vector<float> own_disparity_, own_surface_, own_confidence_;
-  const float* disparity_ = nullptr;
-  const float* surface_ = nullptr;
-  const float* confidence_ = nullptr;
-};
-
-struct Tally {
-  std::int64_t pixels = 0;
-  std::int64_t known = 0;
-  std::int64_t on_floor = 0;
-  [[nodiscard]] bool is_floor() const {
-    return on_floor > 0 && kKnownPart * known >= pixels && 5 * on_floor >= 3 * known;
-  }
-};
-
-/// Whether each superpixel is floor; empty without superpixels.
-std::vector<std::uint8_t> floor_pieces(const ObstacleCues& cues, const kernels::Backdrop& backdrop,
-                                       float margin, const Exec& exec) {
-  if (cues.superpixels.empty()) return {};
-  const int width = cues.superpixels.width();
-  BackgroundRow behind(backdrop, width, exec);
-  SeenRow seen(cues);
-  std::vector<std::uint64_t> up_to(slot(width) + 1);
-  std::vector<Tally> pieces;
-  for_each_run(cues.superpixels, exec, [&](const Run& run) {
-    if (run.first == 0) {
-      behind.look_at(run.y);
-      seen.look_at(run.y);
-      kernels::obstacle_kernels(exec).sum_floor(seen.surface_px(), behind.free_floor_px(), margin, width,
-                                                up_to.data());
-    }
-    const std::size_t i = index(run.label);
-    if (i >= pieces.size()) pieces.resize(i + 1);
-    const std::uint64_t sums = up_to[slot(run.last)] - up_to[slot(run.first)];
-    Tally& piece = pieces[i];
-    piece.pixels += run.length();
-    piece.known += static_cast<std::int64_t>(sums >> 32U);
-    piece.on_floor += static_cast<std::int64_t>(sums & 0xFFFFFFFFU);
-  });
-  std::vector<std::uint8_t> floor(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) floor[i] = pieces[i].is_floor() ? 1 : 0;
-  return floor;
-}
 
 /// An obstacle pixel in the floor frame.
 struct FloorPoint {
@@ -181,29 +65,25 @@ struct IslandStatistics {
 
 Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
                                      const GroundConfig& config, const Exec& exec) {
-  const kernels::Backdrop backdrop = backdrop_of(cues, rig);
-  const std::vector<std::uint8_t> pieces = floor_pieces(cues, backdrop, config.margin, exec);
   Image<ObstacleLabel> space(cues.disparity.disparity_px.size(), exec.pool);
+  const kernels::ObstacleKernels& run = kernels::obstacle_kernels(exec);
   const int width = space.width();
   parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
-    BackgroundRow behind(backdrop, width, exec);
-    std::vector<std::uint8_t> in_floor(slot(width));
+    BackgroundRow behind(cues, rig, exec);
     SeenRow seen(cues);
+    std::vector<float> likely_floor(slot(width));
     for (int y = first; y < last; ++y) {
       behind.look_at(y);
       seen.look_at(y);
-      if (pieces.empty()) {  // each known pixel is a piece; the kernel checks whether it is on the floor
-        const float* const surface = seen.surface_px();
-        std::transform(surface, surface + width, in_floor.begin(), [](float d) { return d == d ? 1 : 0; });
-      } else {
-        const RegionId* const piece = cues.superpixels.row(y);
-        std::transform(piece, piece + width, in_floor.begin(),
-                       [is_floor = pieces.data()](RegionId i) { return is_floor[index(i)]; });
+      run.mark_floor(seen.surface_px(), behind.free_floor_px(), config.margin, width, likely_floor.data());
+      if (!cues.floor_probability.empty()) {
+        const float* const judged = cues.floor_probability.row(y);
+        for (int x = 0; x < width; ++x)
+          likely_floor[slot(x)] = judged[x] == judged[x] ? judged[x] : likely_floor[slot(x)];
       }
-      kernels::obstacle_kernels(exec).label(
-          {cues.objects.row(y), seen.disparity_px(), seen.surface_px(), seen.confidence(), in_floor.data(),
-           behind.free_floor_px(), behind.barrier_px()},
-          config.margin, width, space.row(y));
+      run.label({cues.objects.row(y), seen.disparity_px(), seen.confidence(), likely_floor.data(),
+                 behind.barrier_px()},
+                config.margin, width, space.row(y));
       for (int x = 0; x < width; ++x) {
         if (has(cues.disparity.reject(x, y), Reject::sky) && cues.objects(x, y) == ObjectId::none)
           space(x, y) = ObstacleLabel::sky;
@@ -213,24 +93,26 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
   return space;
 }
 
-Image<float> obstacle_disparities(View<const ObstacleLabel> space, View<const float> disparity_px,
-                                  View<const float> refined_px, View<const float> refined_confidence,
+Image<float> obstacle_disparities(View<const ObstacleLabel> space, const ObstacleCues& cues,
                                   const Exec& exec) {
-  Image<float> all(disparity_px.size(), exec.pool);
+  constexpr float kOff = 1;  // px
+  const View<const float> matched = cues.disparity.disparity_px;
+  Image<float> all(matched.size(), exec.pool);
   for (int y = 0; y < all.height(); ++y) {
     float* const d = all.row(y);
-    std::copy_n(disparity_px.row(y), all.width(), d);
-    if (refined_px.empty()) continue;
-    const ObstacleLabel* const label = space.row(y);
-    const float* const refined = refined_px.row(y);
-    const float* const likely = refined_confidence.row(y);
+    std::copy_n(matched.row(y), all.width(), d);
+    if (cues.refined_px.empty()) continue;
+    const float* const refined = cues.refined_px.row(y);
+    const float* const likely = cues.refined_confidence.row(y);
     for (int x = 0; x < all.width(); ++x) {
-      if (likely[x] < kLikelyRefined) continue;
-      if (label[x] == ObstacleLabel::obstacle) {
-        d[x] = refined[x];
-      } else if (!(std::abs(d[x] - refined[x]) <= 1)) {
+      const ObstacleLabel label = space(x, y);
+      if (label == ObstacleLabel::obstacle && likely[x] >= kLikelyRefined) d[x] = refined[x];
+      if (!cues.ground.plane || cues.objects(x, y) != ObjectId::none) continue;
+      const float height =
+          d[x] - cues.ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y));
+      if (label == ObstacleLabel::floor ? std::abs(height) > kOff
+                                        : label == ObstacleLabel::obstacle && height <= kOff)
         d[x] = kNan;
-      }
     }
   }
   return all;
@@ -324,10 +206,8 @@ std::vector<RejectedObstacle> rejected_obstacles(View<const ObstacleLabel> space
                                                  const std::optional<StereoRig>& rig,
                                                  const RejectedObstacleLimits& limits, const Exec& exec) {
   constexpr double kMinShare = 0.0005;
-  const Image<float> d = obstacle_disparities(space, cues.disparity.disparity_px, cues.refined_px,
-                                              cues.refined_confidence, exec);
-  const kernels::Backdrop backdrop = backdrop_of(cues, rig);
-  BackgroundRow behind(backdrop, space.width(), exec);
+  const Image<float> d = obstacle_disparities(space, cues, exec);
+  BackgroundRow behind(cues, rig, exec);
   const auto rows = [&](int y) { return RestRow{space.row(y), cues.objects.row(y), d.row(y)}; };
   const Islands islands(space.size(), rows, exec);
   std::vector<IslandStatistics> found(islands.count());

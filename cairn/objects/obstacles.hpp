@@ -30,38 +30,40 @@ void fields(ObstaclesConfig& c, V&& v) {
   v("cell_size", c.cell_size, "m", "cell size of the obstacle grid", range(0.005F, 10.0F));
 }
 
-/// The inputs of label_obstacles(); all images have one size. Borrows everything.
+/// What obstacles are labelled by. Borrows everything; all images have one size.
 struct ObstacleCues {
   const DisparityMap& disparity;
   View<const float> surface_disparity_px;  // floor_under_reflections(); empty: the disparities
   View<const float> confidence;            // of the disparities; empty: all are trusted
   const Ground& ground;
   const Background& background;
-  View<const RegionId> superpixels;  // empty: each pixel is its own
+  View<const RegionId> superpixels;  // for group_by_floor() and rejected_obstacles(); may be empty
   View<const ObjectId> objects;
-  View<const float> refined_px = {};  // refine_disparity(); empty: none
-  View<const float> refined_confidence = {};
+  View<const float> refined_px = {};          // refine_disparity(); empty: none
+  View<const float> refined_confidence = {};  // its probability
+  View<const float> floor_probability = {};   // floor_probability(); empty: disparities alone decide
 };
-/// label_obstacles() prefers refined disparities that are at least as likely, 0 … 1.
+/// Refined disparities that are at least as likely, 0 … 1, are preferred to those of matches.
 inline constexpr float kLikelyRefined = 0.8F;
+/// With a probability of the floor of at least the first, label_obstacles() says floor; below the second, obstacle. 0 … 1.
+inline constexpr float kLikelyFloor = 0.7F, kUnlikelyFloor = 0.35F;
 
-/// Classifies each pixel by its refined disparity if that is likely, else by the matched one. obstacle: part
-/// of an object, or above the floor (without a floor: in front of the walls; without either: nearer than
-/// infinity) by more than config.margin, with a disparity more likely right than wrong. floor: outside of
-/// objects, in a superpixel with at least a fifth of its pixels known and three fifths of these on the floor,
-/// except for pixels that are off the floor themselves. Holes in such a superpixel are floor too. sky:
-/// rejected as such. Everything else is unknown.
+/// Classifies each pixel. obstacle: part of an object. sky: rejected as such. Other pixels by the probability that they
+/// show the floor: floor from kLikelyFloor on, obstacle below kUnlikelyFloor, unknown in between. Where that is not
+/// known, by its refined disparity if that is likely, else by the matched one: floor within config.margin of the
+/// floor, obstacle above it (without a floor: in front of the walls; without either: nearer than infinity) by more
+/// than that, if the disparity is more likely right than wrong, else unknown.
 Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
                                      const GroundConfig& config, const Exec& exec);
 
 /// 255 for floor, else 0.
 Image<std::uint8_t> floor_of(View<const ObstacleLabel> space, const Exec& exec);
 
-/// The disparities for scan_obstacles() and map_obstacles(). Of an obstacle the one that it was labelled by, so
-/// holes that were filled have a position, too. Of floor that of the match, but NaN where a likely refined one is more
-/// than 1 px off: what was corrected does not show that the place is free. Empty refined views: a copy.
-Image<float> obstacle_disparities(View<const ObstacleLabel> space, View<const float> disparity_px,
-                                  View<const float> refined_px, View<const float> refined_confidence,
+/// The disparities for scan_obstacles() and map_obstacles(): of obstacles the refined one if it is likely, so holes that
+/// were filled have a position, too; of all others that of the match. With refined disparities, NaN where the disparity
+/// contradicts the label: an obstacle that is no object and not more than 1 px in front of the floor, and floor more than
+/// 1 px off it. Such a place is neither free nor known to be occupied. `cues`: those of label_obstacles().
+Image<float> obstacle_disparities(View<const ObstacleLabel> space, const ObstacleCues& cues,
                                   const Exec& exec);
 
 /// The nearest obstacle in each direction, as from a laser scanner (ROS sensor_msgs/LaserScan), seen from the

@@ -3,6 +3,7 @@
 //
 // The method with pipeline.method=region_tree: one call per stage, in the order of the data.
 #include <cairn/core/future.hpp>
+#include <cairn/objects/floor_probability.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/refine_objects.hpp>
 #include <cairn/objects/sky.hpp>
@@ -104,15 +105,22 @@ Frame frame_of_candidates(const FrameInput& in, RegionCandidates found, const Ru
   frame.disparity = stage("reject_sky", reject_sky(std::move(frame.disparity), of_sky, rig, exec));
   frame.confidence = without_holes(std::move(frame.confidence), frame.disparity.reject);
   if (!refined.disparity_px.empty()) frame.refined = without_sky(std::move(refined), frame.disparity.reject);
-  const ObstacleCues seen{frame.disparity,
-                          surface_disparity_px,
-                          frame.confidence,
-                          frame.ground,
-                          background,
-                          superpixels.labels,
-                          frame.objects.labels,
-                          frame.refined.disparity_px,
-                          frame.refined.confidence};
+  ObstacleCues seen{frame.disparity,
+                    surface_disparity_px,
+                    frame.confidence,
+                    frame.ground,
+                    background,
+                    superpixels.labels,
+                    frame.objects.labels,
+                    frame.refined.disparity_px,
+                    frame.refined.confidence};
+  Image<float> likely_floor;
+  if (!seen.refined_px.empty()) {
+    const FloorGroups groups = group_by_floor(seen, hints, rig, config.ground, exec);
+    likely_floor =
+        stage("floor_probability", floor_probability(groups, superpixels.labels, floor_classifier(), exec));
+  }
+  seen.floor_probability = likely_floor;
   frame.space = stage("label_obstacles", label_obstacles(seen, rig, config.ground, exec));
   const float wall_px = wall_tolerance_px(config.background, in.left.gray.size());
   frame.left_out = stage("rejected_obstacles", rejected_obstacles(frame.space, seen, chosen.likeliest, rig,

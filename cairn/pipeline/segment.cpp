@@ -9,8 +9,18 @@
 namespace cairn {
 
 Image<float> obstacle_disparities(const Frame& frame) {
-  return obstacle_disparities(frame.space, frame.disparity.disparity_px, frame.refined.disparity_px,
-                              frame.refined.confidence, {});
+  const Background none;
+  return obstacle_disparities(frame.space,
+                              {frame.disparity,
+                               {},
+                               frame.confidence,
+                               frame.ground,
+                               none,
+                               {},
+                               frame.objects.labels,
+                               frame.refined.disparity_px,
+                               frame.refined.confidence},
+                              {});
 }
 
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {

@@ -364,9 +364,10 @@ PointCloud2 cloud_of(const Header& header, const Frame& frame, ObstacleLabel spa
   message.point_step = kStep;
   message.is_dense = true;
   const Size size = rig ? frame.space.size() : Size{};
+  const cairn::Image<float> disparities_px = obstacle_disparities(frame);
   for (int y = 0; y < size.height; y += stride) {
     for (int x = 0; x < size.width; x += stride) {
-      const float disparity_px = frame.disparity.disparity_px(x, y);
+      const float disparity_px = disparities_px(x, y);
       if (frame.space(x, y) != space || std::isnan(disparity_px)) continue;
       const auto point = rig->point_in_camera_m(static_cast<float>(x), static_cast<float>(y), disparity_px);
       if (!point) continue;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/image/gradient.hpp>
 #include <cairn/image/noise.hpp>
+#include <cairn/objects/floor_probability.hpp>
 #include <cairn/objects/locate.hpp>
 #include <cairn/objects/refine_objects.hpp>
 #include <cairn/objects/sky.hpp>
@@ -91,10 +92,9 @@ struct ArgumentOf<ObstacleCues> {
     const auto confidence = given.value().cast<View<const float>>();
     const auto& ground = given.value().cast<const Ground&>();
     const auto& background = given.value().cast<const Background&>();
-    const auto& superpixels = given.value().cast<const Superpixels&>();
     const auto surface_disparity_px = given.value().cast<View<const float>>();
-    cues.emplace(ObstacleCues{disparity, surface_disparity_px, confidence, ground, background,
-                              superpixels.labels, objects.labels});
+    cues.emplace(
+        ObstacleCues{disparity, surface_disparity_px, confidence, ground, background, {}, objects.labels});
   }
   [[nodiscard]] const ObstacleCues& get() const { return *cues; }
 };
@@ -227,13 +227,26 @@ RefinedDisparity refined(const Superpixels& superpixels, const MergeTree& tree, 
   return refine_disparity({superpixels, tree, chosen, cues, confidence}, plane_classifier(), exec);
 }
 
+Image<float> likely_floor(const ObstacleCues& cues, const Superpixels& superpixels,
+                          const RefinedDisparity& refined, View<const ObjectHint> hints,
+                          const std::optional<StereoRig>& rig, const GroundConfig& config, const Exec& exec) {
+  ObstacleCues all = cues;
+  all.superpixels = superpixels.labels;
+  all.refined_px = refined.disparity_px;
+  all.refined_confidence = refined.confidence;
+  return floor_probability(group_by_floor(all, hints, rig, config, exec), superpixels.labels,
+                           floor_classifier(), exec);
+}
+
 Image<ObstacleLabel> labelled(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
-                              const RefinedDisparity* refined, const GroundConfig& config, const Exec& exec) {
+                              const RefinedDisparity* refined, View<const float> floor_probability,
+                              const GroundConfig& config, const Exec& exec) {
   ObstacleCues all = cues;
   if (refined != nullptr) {
     all.refined_px = refined->disparity_px;
     all.refined_confidence = refined->confidence;
   }
+  all.floor_probability = floor_probability;
   return label_obstacles(all, rig, config, exec);
 }
 
@@ -361,6 +374,7 @@ void bind_objects(py::module_& m) {
       });
   stage(m, "locate", &locate);
   stage(m, "reject_sky", &reject_sky);
+  stage(m, "floor_probability", &likely_floor);
   stage(m, "label_obstacles", &labelled);
 }
 

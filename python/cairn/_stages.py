@@ -289,11 +289,20 @@ def reject_sky(disparity: DisparityLike, left: ImageLike, confidence: Disparitie
     """Rejects the disparities of the sky, outside of objects. segment() then sets their confidence to 0."""
 
 
+def floor_probability(objects: Objects, disparity: DisparityLike, confidence: DisparitiesLike, ground: Ground,
+                      background: Background, surface_disparity_px: DisparitiesLike, superpixels: Superpixels,
+                      refined: RefinedDisparity, hints: HintsLike, rig: RigLike = None) -> NDArray[numpy.float32]:
+    """The probability that a pixel shows the floor, by fitted trees: (H, W) float32, 0 to 1; NaN in objects, in the sky, above
+    the horizon, where a wall hides the floor, and in groups of one or two pixels. surface_disparity_px: from floor_under_reflections(). hints: from
+    hint_objects(). refined: from without_sky()."""
+
+
 def label_obstacles(objects: Objects, disparity: DisparityLike, confidence: DisparitiesLike, ground: Ground,
-                background: Background, superpixels: Superpixels, surface_disparity_px: DisparitiesLike,
-                rig: RigLike = None, refined: Optional[RefinedDisparity] = None) -> NDArray[numpy.uint8]:
+                    background: Background, surface_disparity_px: DisparitiesLike, rig: RigLike = None,
+                    refined: Optional[RefinedDisparity] = None,
+                    floor_probability: Optional[DisparitiesLike] = None) -> NDArray[numpy.uint8]:
     """The class of each pixel: (H, W) uint8, 255 = obstacle, 128 = floor, 64 = sky, 0 = unknown. surface_disparity_px: from
-    floor_under_reflections()."""
+    floor_under_reflections(). floor_probability: without it, and where it is NaN, the disparities decide."""
 
 
 # ---- checks: listed in C++, for_each_check() ----

@@ -125,7 +125,7 @@ def test_a_hint_counts_as_a_cue_of_the_hints_only(tmp_path):
     names = ["hints: area over the voted size", "area, share of the image"]
     for without, kept in ((("area",), [4, 0]), (("hints:",), [0, 5]), ((), [4, 5])):
         fake = types.SimpleNamespace(work=tmp_path, without=without, region_features=names, bias_features=[],
-                                     pair_features=[], plane_features=[])
+                                     pair_features=[], plane_features=[], floor_features=[])
         _, values = fit.Fitting.records(fake, "regions", 2)
         assert values.tolist() == [kept]
 

@@ -16,7 +16,7 @@ CHECKS = " ".join(name for name, *_ in _cairn.CHECKS)
 STAGES = f"""correct_epipolar match refine_subpixel {CHECKS} combine
     noise_sigma select_textured fit_ground likely_ground reject_below_ground reject_speckles fit_background
     floor_under_reflections superpixel_edges hint_objects cut_superpixels grow_merge_tree estimate_confidence choose_objects refine_disparity superpixels groups
-    measure refine_objects locate reject_sky label_obstacles rejected_obstacles""".split()
+    measure refine_objects locate reject_sky floor_probability label_obstacles rejected_obstacles""".split()
 PAPER_STAGES = f"""match refine_subpixel {CHECKS} combine noise_sigma
     fit_ground reject_below_ground reject_speckles label_floor segment_disparity segment_intensity fuse measure
     locate estimate_confidence label_obstacles rejected_obstacles""".split()
@@ -81,7 +81,7 @@ def test_obstacles_are_reported_whether_objects_or_not(sample):
     assert set(np.unique(frame.space)) == {0, 128, 255}
     assert (frame.space[frame.objects_map > 0] == 255).all() and same(frame.floor, (frame.space == 128).astype(np.uint8) * 255)
     reasons = {left.reason for left in frame.left_out}
-    assert reasons == {"background", "too small", "low confidence"} and repr(frame.left_out[0]).startswith("LeftOut(reason='")
+    assert reasons == {"background", "too small"} and repr(frame.left_out[0]).startswith("LeftOut(reason='")
     scan, grid = frame.scan(), frame.grid()
     seen = scan.ranges_m[np.isfinite(scan.ranges_m)]
     assert len(scan) == len(scan.ranges_m) and 1 < seen.min() < frame.objects[0].distance_m

@@ -76,8 +76,14 @@ def by_hierarchy(sample):
                                      hints, noise)
     disparity = cairn.reject_sky(disparity, sample.left, confidence, ground, superpixels, objects, rig)
     confidence = np.where(disparity.reject == 0, confidence, np.float32(0))
-    space = cairn.label_obstacles(objects, disparity, confidence, ground, background, superpixels, seen, rig,
-                                  cairn.without_sky(refined, disparity.reject))
+    without_sky = cairn.without_sky(refined, disparity.reject)
+    likely_floor = cairn.floor_probability(objects, disparity, confidence, ground, background, seen, superpixels, without_sky,
+                                           hints, rig)
+    space = cairn.label_obstacles(objects, disparity, confidence, ground, background, seen, rig, without_sky, likely_floor)
+    by_disparity = cairn.label_obstacles(objects, disparity, confidence, ground, background, seen, rig, without_sky)
+    is_judged = ~np.isnan(likely_floor)
+    assert same(space[is_judged] == 128, likely_floor[is_judged] >= np.float32(0.7)) and is_judged.mean() > 0.3
+    assert same(space[~is_judged], by_disparity[~is_judged])
     assert same(refined.confidence, sample.frame.refined.confidence)
     likely = cairn.likely_disparities(refined, disparity.reject, 0.5)
     assert same(np.isnan(likely.disparity_px), likely.reject != 0)

@@ -26,14 +26,12 @@ struct Scene {
   DisparityMap disparity;
   Image<float> seen;
   Image<float> confidence;
-  Image<RegionId> superpixels;
   Image<ObjectId> objects;
 
   Scene(Size size, std::uint32_t seed)
       : disparity{Image<float>(size), Image<Reject>(size, Reject::none, {})},
         seen(size),
         confidence(size),
-        superpixels(size),
         objects(size) {
     support::Noise noise(seed);
     for (int y = 0; y < size.height; ++y) {
@@ -47,7 +45,6 @@ struct Scene {
                                                                : floor;
         seen(x, y) = noise.uniform() < 0.1 ? floor : disparity.disparity_px(x, y);
         confidence(x, y) = static_cast<float>(noise.uniform());
-        superpixels(x, y) = RegionId{piece};
         objects(x, y) = ObjectId{noise.uniform() < 0.1 ? 1 : 0};
         if (std::isnan(disparity.disparity_px(x, y)) && noise.uniform() < 0.3)
           disparity.reject(x, y) = Reject::sky;
@@ -72,24 +69,23 @@ TEST(SpaceEquivalence, HoldsForEverySize) {
     const Ground ground{kFloor, 1, 0, Refusal::none};
     const Background background{{kFloor, kLeftWall, kRightWall}, true};
     expect_equal_to_reference(
-        {scene.disparity, scene.seen, scene.confidence, ground, background, scene.superpixels, scene.objects},
-        kRig);
+        {scene.disparity, scene.seen, scene.confidence, ground, background, {}, scene.objects}, kRig);
   }
 }
 
 TEST(SpaceEquivalence, HoldsForAnyKnownInputs) {
   const Scene scene({67, 45}, 3);
-  const Image<float> no_confidence;
-  const Image<RegionId> no_superpixels;
+  const Image<float> no_confidence, no_probability;
+  const Image<float> likely_floor = random_input::random_floats({67, 45}, 1, 0.3F, 4);
   for (const Ground& ground : {Ground{kFloor, 1, 0, Refusal::none}, Ground{}}) {
     for (const bool walls : {false, true}) {
       Background background{{}, ground.plane.has_value()};
       if (ground.plane) background.planes.push_back(kFloor);
       if (walls) background.planes.insert(background.planes.end(), {kLeftWall, kRightWall});
       for (const Image<float>* const confidence : {&scene.confidence, &no_confidence}) {
-        for (const Image<RegionId>* const superpixels : {&scene.superpixels, &no_superpixels}) {
-          const ObstacleCues cues{scene.disparity, {},           *confidence,  ground,
-                                  background,      *superpixels, scene.objects};
+        for (const Image<float>* const probability : {&likely_floor, &no_probability}) {
+          const ObstacleCues cues{scene.disparity, {}, *confidence, ground,      background, {},
+                                  scene.objects,   {}, {},          *probability};
           expect_equal_to_reference(cues, kRig);
           expect_equal_to_reference(cues, std::nullopt);
         }
@@ -106,9 +102,9 @@ TEST(SpaceEquivalence, HoldsForRefinedDisparities) {
   const Background background{{kFloor, kLeftWall}, true};
   const Image<float> no_confidence;
   for (const Image<float>* const confidence : {&scene.confidence, &no_confidence}) {
-    expect_equal_to_reference({scene.disparity, scene.seen, *confidence, ground, background,
-                               scene.superpixels, scene.objects, refined, likely},
-                              kRig);
+    expect_equal_to_reference(
+        {scene.disparity, scene.seen, *confidence, ground, background, {}, scene.objects, refined, likely},
+        kRig);
     expect_equal_to_reference(
         {scene.disparity, {}, *confidence, ground, background, {}, scene.objects, refined, likely}, kRig);
   }

@@ -3,7 +3,7 @@
 #include "obstacles.hpp"
 
 #include <cmath>
-#include <map>
+#include <limits>
 
 namespace cairn::reference {
 namespace {
@@ -34,15 +34,6 @@ Behind behind(const ObstacleCues& cues, const std::optional<StereoRig>& rig, int
   return found;
 }
 
-struct Piece {
-  int pixels = 0;
-  int known = 0;
-  int on_floor = 0;
-  [[nodiscard]] bool is_floor() const {
-    return on_floor > 0 && 5 * known >= pixels && 5 * on_floor >= 3 * known;
-  }
-};
-
 }  // namespace
 
 Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::optional<StereoRig>& rig,
@@ -66,19 +57,10 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
     const auto floor = behind(cues, rig, x, y).free_floor;
     return floor && std::abs(surface_disparity_px(x, y) - *floor) <= config.margin;
   };
-  std::map<RegionId, Piece> pieces;
-  for (int y = 0; y < size.height && !cues.superpixels.empty(); ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      Piece& piece = pieces[cues.superpixels(x, y)];
-      ++piece.pixels;
-      piece.known += std::isnan(surface_disparity_px(x, y)) ? 0 : 1;
-      piece.on_floor += is_on_floor(x, y) ? 1 : 0;
-    }
-  }
-  const auto is_floor = [&](int x, int y) {
-    if (cues.superpixels.empty()) return is_on_floor(x, y);
-    if (!pieces[cues.superpixels(x, y)].is_floor() || !behind(cues, rig, x, y).free_floor) return false;
-    return std::isnan(surface_disparity_px(x, y)) || is_on_floor(x, y);
+  const auto likely_floor = [&](int x, int y) {
+    if (!cues.floor_probability.empty() && !std::isnan(cues.floor_probability(x, y)))
+      return cues.floor_probability(x, y);
+    return is_on_floor(x, y) ? 1.0F : std::numeric_limits<float>::quiet_NaN();
   };
   const auto is_obstacle = [&](int x, int y) {
     return disparity_px(x, y) - behind(cues, rig, x, y).barrier > config.margin && confidence(x, y) >= 0.5F;
@@ -87,9 +69,10 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
   for (int y = 0; y < space.height(); ++y) {
     for (int x = 0; x < space.width(); ++x) {
       ObstacleLabel& is = space(x, y);
-      is = is_floor(x, y)      ? ObstacleLabel::floor
-           : is_obstacle(x, y) ? ObstacleLabel::obstacle
-                               : ObstacleLabel::unknown;
+      const float likely = likely_floor(x, y);
+      is = ObstacleLabel::unknown;
+      if (std::isnan(likely) ? is_obstacle(x, y) : likely < kUnlikelyFloor) is = ObstacleLabel::obstacle;
+      if (likely >= kLikelyFloor) is = ObstacleLabel::floor;
       if (has(cues.disparity.reject(x, y), Reject::sky)) is = ObstacleLabel::sky;
       if (cues.objects(x, y) != ObjectId::none) is = ObstacleLabel::obstacle;
     }

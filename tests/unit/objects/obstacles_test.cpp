@@ -25,7 +25,7 @@ struct Room {
   Image<ObjectId> objects;
   Ground ground{kFloor, 1, 0, Refusal::none};
   Background background{{kFloor, kWall}, true};
-  bool by_pieces = true;
+  Image<float> floor_probability;
 
   explicit Room(Size size = kSize)
       : disparity{Image<float>(size, kNan, {}), Image<Reject>(size, Reject::none, {})},
@@ -45,9 +45,8 @@ struct Room {
     }
   }
   [[nodiscard]] ObstacleCues cues() const {
-    return {disparity, {},         confidence,
-            ground,    background, by_pieces ? superpixels.view() : View<const RegionId>{},
-            objects};
+    return {disparity,   {},      confidence,          ground, background,
+            superpixels, objects, View<const float>{}, {},     floor_probability};
   }
   [[nodiscard]] Image<ObstacleLabel> space(int threads = 1) const {
     return label_obstacles(cues(), kRig, {}, Exec::with_threads(threads));
@@ -85,24 +84,30 @@ TEST(LabelSpace, PixelsAboveTheFloorAreObstaclesEvenIfNoObject) {
   EXPECT_EQ(space(33, 52), ObstacleLabel::floor);
 }
 
-TEST(LabelSpace, HolesAreUnknownUnlessTheFloorIsAroundThem) {
+TEST(LabelSpace, AHoleIsUnknown) {
   Room room;
-  room.disparity.disparity_px(45, 55) = kNan;  // one pixel of a square of floor
-  for (int y = 50; y < 60; ++y) std::fill_n(room.disparity.disparity_px.row(y), 10, kNan);  // a whole square
-  const Image<ObstacleLabel> space = room.space();
-  EXPECT_EQ(space(45, 55), ObstacleLabel::floor);
-  EXPECT_EQ(space(5, 55), ObstacleLabel::unknown);
-  room.by_pieces = false;
+  room.disparity.disparity_px(45, 55) = kNan;
   EXPECT_EQ(room.space()(45, 55), ObstacleLabel::unknown);
 }
 
-TEST(LabelSpace, ASuperpixelIsFloorByThreeFifthsOfItsKnownPixels) {
+TEST(LabelSpace, TheProbabilityOfTheFloorDecidesWhereItIsKnown) {
   Room room;
-  room.board({0, 50, 4, 10}, 20);  // two fifths of a square of 10 px
-  EXPECT_EQ(room.space()(8, 55), ObstacleLabel::floor);
-  EXPECT_EQ(room.space()(2, 55), ObstacleLabel::obstacle);
-  room.board({0, 50, 5, 10}, 20);
-  EXPECT_EQ(room.space()(8, 55), ObstacleLabel::unknown);
+  room.board({30, 35, 8, 12}, 8);
+  room.floor_probability = Image<float>(kSize, kNan, {});
+  room.floor_probability(33, 38) = kLikelyFloor;
+  room.floor_probability(34, 38) = kLikelyFloor - 0.01F;
+  room.floor_probability(45, 55) = kUnlikelyFloor;
+  room.floor_probability(46, 55) = kUnlikelyFloor - 0.01F;
+  room.disparity.disparity_px(46, 55) = kNan;
+  room.objects(33, 39) = ObjectId{1};
+  room.floor_probability(33, 39) = 1;
+  const Image<ObstacleLabel> space = room.space();
+  EXPECT_EQ(space(33, 38), ObstacleLabel::floor);
+  EXPECT_EQ(space(34, 38), ObstacleLabel::unknown);
+  EXPECT_EQ(space(45, 55), ObstacleLabel::unknown);
+  EXPECT_EQ(space(46, 55), ObstacleLabel::obstacle);
+  EXPECT_EQ(space(33, 39), ObstacleLabel::obstacle) << "an object goes first";
+  EXPECT_EQ(space(35, 38), ObstacleLabel::obstacle) << "by its disparity";
 }
 
 TEST(LabelSpace, UnreliableDisparitiesAreNoObstacle) {
@@ -315,27 +320,35 @@ TEST(LeftOutOf, AnObjectSplitsAnObstacleOfItsDisparity) {
   }
 }
 
-/// A pixel each: labelled by its refined disparity; by the match, as that is unlikely; floor with a contradicting match,
-/// with an agreeing one, and without one.
-TEST(ObstacleDisparities, AreThoseThatDecided) {
+/// A pixel each. Obstacles: by the refined disparity; by the match, as that is unlikely; on the floor; an object on the
+/// floor. Floor: off the floor; on it; a hole.
+TEST(ObstacleDisparities, AreThoseThatDoNotContradictTheLabel) {
   const auto filled = [](std::initializer_list<float> values) {
     Image<float> image({static_cast<int>(values.size()), 1});
     std::copy(values.begin(), values.end(), image.row(0));
     return image;
   };
-  constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
-  Image<ObstacleLabel> space({5, 1}, ObstacleLabel::floor, {});
-  space(0, 0) = space(1, 0) = ObstacleLabel::obstacle;
-  const Image<float> matched = filled({kHole, 9, 9, 5.5F, kHole});
-  const Image<float> refined = filled({12, 4, 5, 5, 5});
-  const Image<float> likely = filled({0.9F, 0.5F, 0.9F, 0.9F, 0.9F});
-  const Image<float> d = obstacle_disparities(space, matched, refined, likely, {});
+  Image<ObstacleLabel> space({7, 1}, ObstacleLabel::floor, {});
+  std::fill_n(space.row(0), 4, ObstacleLabel::obstacle);
+  Image<ObjectId> objects({7, 1}, ObjectId::none, {});
+  objects(3, 0) = ObjectId{1};
+  const DisparityMap disparity{filled({kNan, 9, 5.5F, 5.5F, 9, 5.5F, kNan}),
+                               Image<Reject>({7, 1}, Reject::none, {})};
+  const Image<float> refined = filled({12, 4, 5, 5, 5, 5, 5});
+  const Image<float> likely = filled({0.9F, 0.5F, 0.5F, 0.5F, 0.9F, 0.9F, 0.9F});
+  const Ground ground{GroundPlane{0, 0, 5}, 1, 0, Refusal::none};
+  const Background background;
+  const Image<float> d =
+      obstacle_disparities(space, {disparity, {}, {}, ground, background, {}, objects, refined, likely}, {});
   EXPECT_EQ(d(0, 0), 12);
   EXPECT_EQ(d(1, 0), 9);
   EXPECT_TRUE(std::isnan(d(2, 0)));
   EXPECT_EQ(d(3, 0), 5.5F);
   EXPECT_TRUE(std::isnan(d(4, 0)));
-  EXPECT_EQ(obstacle_disparities(space, matched, {}, {}, {})(2, 0), 9);
+  EXPECT_EQ(d(5, 0), 5.5F);
+  EXPECT_TRUE(std::isnan(d(6, 0)));
+  EXPECT_EQ(obstacle_disparities(space, {disparity, {}, {}, ground, background, {}, objects}, {})(4, 0), 9)
+      << "without refined disparities, a label comes from the match";
 }
 
 }  // namespace
