@@ -107,7 +107,9 @@ class FloorGrouping {
       for (int y = first; y < last; ++y) {
         behind.look_at(y);
         seen.look_at(y);
-        mark_kinds(y, seen.surface_px(), behind.free_floor_px());
+        kernels::obstacle_kernels(exec_).mark_kinds(
+            {cues_.objects.row(y), cues_.disparity.reject.row(y), seen.surface_px(), behind.free_floor_px()},
+            margin_, size_.width, kinds_.row(y));
         const RegionId* const superpixel = cues_.superpixels.row(y);
         const auto [low, high] = std::minmax_element(superpixel, superpixel + size_.width);
         lowest = std::min(lowest, index(*low));
@@ -134,21 +136,6 @@ class FloorGrouping {
   }
 
  private:
-  void mark_kinds(int y, const float* seen_px, const float* free_floor_px) {
-    const ObjectId* const object = cues_.objects.row(y);
-    const Reject* const reject = cues_.disparity.reject.row(y);
-    FloorKind* const kinds = kinds_.row(y);
-    for (int x = 0; x < size_.width; ++x) {
-      const float height = seen_px[x] - free_floor_px[x];
-      const bool is_judged = (free_floor_px[x] == free_floor_px[x]) & (object[x] == ObjectId::none) &
-                             !has(reject[x], Reject::sky);
-      const FloorKind off = height > 0 ? FloorKind::in_front : FloorKind::behind;
-      const FloorKind known = std::abs(height) <= margin_ ? FloorKind::on_floor : off;
-      const FloorKind kind = seen_px[x] == seen_px[x] ? known : FloorKind::hole;
-      kinds[x] = is_judged ? kind : FloorKind::not_judged;
-    }
-  }
-
   /// Every second pixel, as on a chequerboard.
   void sum_up(int y, std::size_t first_superpixel, std::vector<FloorSums>& sums) const {
     const float* const matched = surface_px_.row(y);

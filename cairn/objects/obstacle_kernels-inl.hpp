@@ -60,7 +60,41 @@ inline void label(const SpaceRow& given, float margin, int width, ObstacleLabel*
   }
 }
 
-inline constexpr ObstacleKernels kSpaceKernels{look_behind, mark_floor, label};
+inline void place(const PlacedRow& given, const GroundPlane& plane, int y, int width,
+                  float* CAIRN_RESTRICT out) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kOff = 1;  // px
+  const PlacedRow row = given;
+  const GroundPlane floor = plane;
+  const auto height_of_row = static_cast<float>(y);
+  for (int x = 0; x < width; ++x) {
+    const bool is_obstacle = row.label[x] == ObstacleLabel::obstacle;
+    const bool is_floor = row.label[x] == ObstacleLabel::floor;
+    const bool is_corrected = is_obstacle & (row.refined_confidence[x] >= kLikelyRefined);
+    const float d = is_corrected ? row.refined[x] : row.matched[x];
+    const float off = d - (floor.a * static_cast<float>(x) + floor.b * height_of_row + floor.c);
+    const bool contradicts = (is_floor & (std::abs(off) > kOff)) |
+                             (is_obstacle & (row.object[x] == ObjectId::none) & (off <= kOff));
+    out[x] = contradicts ? kNone : d;
+  }
+}
+
+inline void mark_kinds(const KindRow& given, float margin, int width, FloorKind* CAIRN_RESTRICT out) {
+  const KindRow row = given;
+  for (int x = 0; x < width; ++x) {
+    const float seen = row.seen[x];
+    const float floor = row.free_floor[x];
+    const float off = seen - floor;
+    const bool is_judged = (floor == floor) & (row.object[x] == ObjectId::none) &
+                           ((row.reject[x] & Reject::sky) == Reject::none);
+    const FloorKind beyond = off > 0 ? FloorKind::in_front : FloorKind::behind;
+    const FloorKind known = std::abs(off) <= margin ? FloorKind::on_floor : beyond;
+    const FloorKind kind = seen == seen ? known : FloorKind::hole;
+    out[x] = is_judged ? kind : FloorKind::not_judged;
+  }
+}
+
+inline constexpr ObstacleKernels kSpaceKernels{look_behind, mark_floor, label, place, mark_kinds};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

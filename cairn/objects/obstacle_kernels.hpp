@@ -3,12 +3,13 @@
 #pragma once
 
 #include <cairn/core/exec.hpp>
+#include <cairn/objects/floor_probability.hpp>
 #include <cairn/objects/obstacles.hpp>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-/// The kernels of label_obstacles() and rejected_obstacles(), per pixel of a row; one set per instruction set. Private to
+/// The kernels of label_obstacles(), group_by_floor() and what places obstacles, per pixel of a row; one set per instruction set. Private to
 /// the library.
 namespace cairn::kernels {
 
@@ -35,6 +36,23 @@ struct SpaceRow {
   const float* barrier;
 };
 
+/// The rows of mark_kinds().
+struct KindRow {
+  const ObjectId* object;
+  const Reject* reject;
+  const float* seen;
+  const float* free_floor;
+};
+
+/// The rows of place().
+struct PlacedRow {
+  const ObstacleLabel* label;
+  const ObjectId* object;
+  const float* matched;
+  const float* refined;
+  const float* refined_confidence;
+};
+
 /// Plain loops that compilers vectorise, as in PointKernels.
 struct ObstacleKernels {
   /// For the pixels of row y.
@@ -44,6 +62,10 @@ struct ObstacleKernels {
                      float* floor_probability);
   /// As label_obstacles() defines it.
   void (*label)(const SpaceRow& row, float margin, int width, ObstacleLabel* out);
+  /// As obstacle_disparities() defines it, for row y above the floor's plane.
+  void (*place)(const PlacedRow& row, const GroundPlane& floor, int y, int width, float* out);
+  /// The kind of each pixel, as group_by_floor() defines it.
+  void (*mark_kinds)(const KindRow& row, float margin, int width, FloorKind* out);
 };
 
 /// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.

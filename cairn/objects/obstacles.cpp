@@ -95,25 +95,20 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
 
 Image<float> obstacle_disparities(View<const ObstacleLabel> space, const ObstacleCues& cues,
                                   const Exec& exec) {
-  constexpr float kOff = 1;  // px
   const View<const float> matched = cues.disparity.disparity_px;
+  const kernels::ObstacleKernels& run = kernels::obstacle_kernels(exec);
+  // Without a floor, nothing contradicts a label: every disparity is in front of this plane.
+  const GroundPlane floor =
+      cues.ground.plane.value_or(GroundPlane{0, 0, -std::numeric_limits<float>::infinity()});
   Image<float> all(matched.size(), exec.pool);
   for (int y = 0; y < all.height(); ++y) {
-    float* const d = all.row(y);
-    std::copy_n(matched.row(y), all.width(), d);
-    if (cues.refined_px.empty()) continue;
-    const float* const refined = cues.refined_px.row(y);
-    const float* const likely = cues.refined_confidence.row(y);
-    for (int x = 0; x < all.width(); ++x) {
-      const ObstacleLabel label = space(x, y);
-      if (label == ObstacleLabel::obstacle && likely[x] >= kLikelyRefined) d[x] = refined[x];
-      if (!cues.ground.plane || cues.objects(x, y) != ObjectId::none) continue;
-      const float height =
-          d[x] - cues.ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y));
-      if (label == ObstacleLabel::floor ? std::abs(height) > kOff
-                                        : label == ObstacleLabel::obstacle && height <= kOff)
-        d[x] = kNan;
+    if (cues.refined_px.empty()) {
+      std::copy_n(matched.row(y), all.width(), all.row(y));
+      continue;
     }
+    run.place({space.row(y), cues.objects.row(y), matched.row(y), cues.refined_px.row(y),
+               cues.refined_confidence.row(y)},
+              floor, y, all.width(), all.row(y));
   }
   return all;
 }

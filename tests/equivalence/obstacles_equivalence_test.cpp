@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/first_difference.hpp"
 #include "support/grids.hpp"
 #include "support/noise.hpp"
 #include "support/random_input.hpp"
@@ -60,6 +61,8 @@ void expect_equal_to_reference(const ObstacleCues& cues, const std::optional<Ste
     EXPECT_EQ(grids::numbers(label_obstacles(cues, rig, config, Exec::with_threads(1, target))),
               grids::numbers(expected))
         << text(expected.size());
+    const Image<float> placed = obstacle_disparities(expected, cues, Exec::with_threads(1, target));
+    EXPECT_EQ(first_difference(reference::obstacle_disparities(expected, cues), placed), "");
   }
 }
 

@@ -80,4 +80,21 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
   return space;
 }
 
+Image<float> obstacle_disparities(View<const ObstacleLabel> space, const ObstacleCues& cues) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  Image<float> all = cues.disparity.disparity_px.clone();
+  for (int y = 0; y < all.height() && !cues.refined_px.empty(); ++y) {
+    for (int x = 0; x < all.width(); ++x) {
+      float& d = all(x, y);
+      const bool is_obstacle = space(x, y) == ObstacleLabel::obstacle;
+      if (is_obstacle && cues.refined_confidence(x, y) >= kLikelyRefined) d = cues.refined_px(x, y);
+      if (!cues.ground.plane) continue;
+      const float off = d - cues.ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y));
+      if (space(x, y) == ObstacleLabel::floor && std::abs(off) > 1) d = kNone;
+      if (is_obstacle && cues.objects(x, y) == ObjectId::none && off <= 1) d = kNone;
+    }
+  }
+  return all;
+}
+
 }  // namespace cairn::reference

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cairn/core/target.hpp>
 #include <cairn/regions/object_hints.hpp>
 #include <cairn/regions/region_features.hpp>
 #include <cmath>
@@ -177,15 +178,19 @@ TEST(FloorProbability, ASuperpixelBetweenThePixelsLookedAtIsNotJudged) {
   EXPECT_GT(likely(5, 11), 0.9F);
 }
 
-TEST(GroupByFloor, DoesNotDependOnThreads) {
+TEST(GroupByFloor, DoesNotDependOnThreadsOrTargets) {
   Scene scene(Size{40, 300});  // more rows than one parallel range
   for (int y = 0; y < 300; y += 3) scene.refined(y % 40, y) += static_cast<float>(y % 7);
+  scene.disparity.reject(7, 30) = Reject::sky | Reject::left_right;
   const FloorGroups one = scene.groups();
-  const FloorGroups three = scene.groups({}, 3);
-  EXPECT_EQ(one.features, three.features);
-  EXPECT_EQ(one.pixels, three.pixels);
-  for (int y = 0; y < 300; ++y)
-    EXPECT_TRUE(std::equal(one.kinds.row(y), one.kinds.row(y) + 40, three.kinds.row(y)));
+  for (const Target target : supported_targets()) {
+    const FloorGroups three =
+        group_by_floor(scene.cues(), scene.hints, {}, {}, Exec::with_threads(3, target));
+    EXPECT_EQ(one.features, three.features);
+    EXPECT_EQ(one.pixels, three.pixels);
+    for (int y = 0; y < 300; ++y)
+      EXPECT_TRUE(std::equal(one.kinds.row(y), one.kinds.row(y) + 40, three.kinds.row(y)));
+  }
 }
 
 }  // namespace
