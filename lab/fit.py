@@ -14,9 +14,10 @@ choose planes or that recognise the floor, likewise.
 Gradient boosting fits four scores and a correction: whether two neighbouring regions belong to the same object, on the pairs that occur
 while the merge tree grows; whether a region is a whole object, on the regions of such trees; whether a group of pixels lies on a
 plane, and whether it shows the floor; and how far the disparity of a found object is from the true one. The floor is fitted
-to what the library finds, with refined disparities, so build the tool again before it. Which pairs and regions occur depends on the first score, so it is fitted twice. Regions always come from trees grown by a fit that has
-not seen their scene (cross-validation in `--folds` folds); so does every figure printed for the fit set. The yardstick and
-the real frames are only reported. Everything is seeded: the same frames give the same trees.
+to what the library finds, with refined disparities, so build the tool again before it. Which pairs and regions occur
+depends on the first score, so it is fitted twice. Regions always come from trees grown by a fit that has not seen their scene
+(cross-validation in `--folds` folds); so does every figure printed for the fit set. The yardstick and the real frames are
+only reported. Everything is seeded: the same frames give the same trees.
 """
 import argparse
 import functools
@@ -212,8 +213,7 @@ class Fitting:
             values.append(all_[:, 3:])
         values = np.concatenate(values)
         names = {"regions": self.region_features, "bias": self.bias_features, "planes": self.plane_features,
-                 "floor": self.floor_features}.get(
-            name, self.pair_features)
+                 "floor": self.floor_features}.get(name, self.pair_features)
         for i, feature in enumerate(names):
             # Features from hints count as cues of the hints only.
             if any(word in feature for word in self.without) and ("hints:" in self.without or "hints:" not in feature):

@@ -17,7 +17,6 @@
 // the frame and of a close-up of its largest object; for the inputs, see record_input().
 #include <cairn/cairn.hpp>
 #include <cairn/objects/floor_probability.hpp>
-#include <cairn/objects/sky.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <cairn/regions/choose_objects.hpp>
 #include <cairn/timing/clock.hpp>
@@ -347,40 +346,41 @@ void record_floor(std::ofstream& file, int job, Part part, const Models& by) {
   Config config;
   config.match.num_disparities = part.num_disparities;
   const Exec exec;
+  const Run run{part.rig, config, exec};
   StageClock stage(exec);
-  RegionCandidates cut = superpixel_candidates(part.in, {part.rig, config, exec}, by.network, stage);
-  StereoResult& stereo = cut.match.stereo;
-  const LeftImage& left = part.in.left;
-  const View<const RegionId> superpixels = cut.superpixels.labels;
-  const MergeTree tree = grow_merge_tree(cut.superpixels, cut.cues(left), by.same_thing, exec);
-  const ChosenObjects chosen =
-      choose_objects(tree, by.whole_object, limits_of(config.objects, superpixels.size()), exec);
-  const Segmentation regions = object_regions(cut.superpixels, chosen, stereo.disparity, exec);
-  const Objects objects = measure(regions.labels, chosen.scores, stereo.disparity, left, exec);
-  Image<float> confidence =
-      estimate_confidence(cut.match.matches, stereo.disparity, confidence_model(config.match.method), exec);
-  RefinedDisparity refined =
-      refine_disparity({cut.superpixels, tree, chosen, cut.cues(left), confidence}, plane_classifier(), exec);
-  const SkyCues of_sky{left.gray, confidence, stereo.ground, superpixels, objects.labels};
-  const DisparityMap disparity = reject_sky(std::move(stereo.disparity), of_sky, part.rig, exec);
-  confidence = without_holes(std::move(confidence), disparity.reject);
-  refined = without_sky(std::move(refined), disparity.reject);
-  const ObstacleCues cues{disparity,      cut.surface_disparity_px, confidence,
-                          stereo.ground,  cut.background,           superpixels,
-                          objects.labels, refined.disparity_px,     refined.confidence};
-  const FloorGroups groups = group_by_floor(cues, cut.hints, part.rig, config.ground, exec);
+  RegionCandidates cut = superpixel_candidates(part.in, run, by.network, stage);
+  cut.tree = grow_merge_tree(cut.superpixels, cut.cues(part.in.left), by.same_thing, exec);
+  cut.match.stereo.confidence = estimate_confidence(cut.match.matches, cut.match.stereo.disparity,
+                                                    confidence_model(config.match.method), exec);
+  const Background background = cut.background;
+  const Image<float> surface_disparity_px = cut.surface_disparity_px.clone();
+  const Image<ObjectHint> hints = cut.hints.clone();
+  const auto choose = [&](const RegionCandidates& candidates, const ChoiceLimits& limits) {
+    return choose_objects(candidates.tree, by.whole_object, limits, exec);
+  };
+  const Frame frame = frame_of_candidates(part.in, std::move(cut), run, choose);
+  if (!frame.ground.plane) return;
+  const View<const RegionId> superpixels = frame.superpixels.labels;
+  const ObstacleCues cues{frame.disparity,
+                          surface_disparity_px,
+                          frame.confidence,
+                          frame.ground,
+                          background,
+                          superpixels,
+                          frame.objects.labels,
+                          frame.refined.disparity_px,
+                          frame.refined.confidence};
+  const FloorGroups groups = group_by_floor(cues, hints, part.rig, config.ground, exec);
+  const float infinity_px = part.rig ? -part.rig->doffs_px : 0;
   std::vector<std::array<double, 2>> known(groups.features.size());  // weights: of all, of floor
   for (int y = 0; y < superpixels.height(); ++y) {
     for (int x = 0; x < superpixels.width(); ++x) {
       if (groups.kinds(x, y) == FloorKind::not_judged || part.objects(x, y) == TruthId::dont_care) continue;
-      const float infinity_px = part.rig ? -part.rig->doffs_px : 0;
       const float d = part.truth_px(x, y) - infinity_px;
-      const float off =
-          std::abs(d / (stereo.ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y)) -
-                        infinity_px) -
-                   1);
+      const float floor_px =
+          frame.ground.plane->disparity_px(static_cast<float>(x), static_cast<float>(y)) - infinity_px;
       const bool is_floor = part.ground(x, y) == 255;
-      if (is_floor && !(off <= kMaxOff)) continue;
+      if (is_floor && !(std::abs(d / floor_px - 1) <= kMaxOff)) continue;
       const bool is_far = !part.rig || !(d * kFar_m > part.rig->focal_px * part.rig->baseline_m);
       const double weight = is_far ? kWeightOfFar : 1;
       auto& [all, floor] = known[FloorGroups::group(superpixels(x, y), groups.kinds(x, y))];

@@ -85,6 +85,7 @@ class FloorGrouping {
       : cues_(cues),
         hints_(hints),
         rig_(rig),
+        infinity_px_(rig ? -rig->doffs_px : 0),
         floor_(cues.ground.plane.value_or(GroundPlane{})),
         margin_(config.margin),
         exec_(exec),
@@ -94,6 +95,12 @@ class FloorGrouping {
         kinds_(size_, FloorKind::not_judged, exec.pool),
         column_(slot(size_.width)) {
     for (int x = 0; x < size_.width; ++x) column_[slot(x)] = x * hints.width() / size_.width;
+    for (const int x : {0, size_.width - 1}) {
+      for (const int y : {0, size_.height - 1}) {
+        const float at = floor_.disparity_px(static_cast<float>(x), static_cast<float>(y));
+        nearest_px_ = std::max(nearest_px_, at - infinity_px_);
+      }
+    }
   }
 
   FloorGroups run() && {
@@ -170,15 +177,7 @@ class FloorGrouping {
     const auto n = static_cast<double>(group.pixels);
     const auto x = static_cast<float>(static_cast<double>(group.x) / n);
     const auto y = static_cast<float>(static_cast<double>(group.y) / n);
-    const float infinity_px = rig_ ? -rig_->doffs_px : 0;
-    const float floor_px = floor_.disparity_px(x, y) - infinity_px;
-    float nearest_px = 1;
-    for (const int right : {0, size_.width - 1}) {
-      for (const int bottom : {0, size_.height - 1}) {
-        const float at = floor_.disparity_px(static_cast<float>(right), static_cast<float>(bottom));
-        nearest_px = std::max(nearest_px, at - infinity_px);
-      }
-    }
+    const float floor_px = floor_.disparity_px(x, y) - infinity_px_;
     const double above = height(group.refined);
     const bool is_known = group.refined.known > 0;
     const double of_camera = std::clamp(above / std::max(0.5, double{floor_px}), -1.0, 3.0);
@@ -194,7 +193,7 @@ class FloorGrouping {
                             hint(group.object, group.pixels),
                             hint(group.outline, group.pixels),
                             2 * static_cast<double>(superpixel.pixels) / static_cast<double>(size_.area()),
-                            double{floor_px / nearest_px},
+                            double{floor_px / nearest_px_},
                             double{y} / size_.height,
                             is_known ? of_camera : double{kUnknown},
                             mean(superpixel.matched.known, superpixel.pixels, 1),
@@ -212,12 +211,14 @@ class FloorGrouping {
   const ObstacleCues& cues_;
   View<const ObjectHint> hints_;
   const std::optional<StereoRig>& rig_;
+  float infinity_px_;
   GroundPlane floor_;
   float margin_;
   const Exec& exec_;
   Size size_;
   View<const float> surface_px_;
   Image<FloorKind> kinds_;
+  float nearest_px_ = 1;         // of the floor in the image, from infinity
   std::vector<int> column_;      // of the hints
   std::vector<FloorSums> sums_;  // of each group
 };

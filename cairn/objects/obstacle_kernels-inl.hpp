@@ -36,26 +36,20 @@ inline void look_behind(const Backdrop& backdrop, int y, int width, const Backdr
   }
 }
 
-inline void mark_floor(const float* surface_disparity_px, const float* free_floor_px, float margin, int width,
-                       float* CAIRN_RESTRICT floor_probability) {
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  for (int x = 0; x < width; ++x) {
-    const float off = std::abs(surface_disparity_px[x] - free_floor_px[x]);
-    floor_probability[x] = off <= margin ? 1.0F : kNone;
-  }
-}
-
 inline void label(const SpaceRow& given, float margin, int width, ObstacleLabel* CAIRN_RESTRICT out) {
   constexpr float kRatherRight = 0.5F;
   const SpaceRow row = given;
   for (int x = 0; x < width; ++x) {
     const float likely = row.floor_probability[x];
+    const bool is_judged = likely == likely;
+    const bool is_on_floor = std::abs(row.surface[x] - row.free_floor[x]) <= margin;
     const bool is_in_front =
         (row.disparity[x] - row.barrier[x] > margin) & (row.confidence[x] >= kRatherRight);
-    const bool is_obstacle = (likely < kUnlikelyFloor) | (!(likely == likely) & is_in_front);
-    const ObstacleLabel alone = likely >= kLikelyFloor ? ObstacleLabel::floor
-                                : is_obstacle          ? ObstacleLabel::obstacle
-                                                       : ObstacleLabel::unknown;
+    const bool is_floor = (likely >= kLikelyFloor) | (!is_judged & is_on_floor);
+    const bool is_obstacle = (likely < kUnlikelyFloor) | (!is_judged & is_in_front);
+    const ObstacleLabel alone = is_floor      ? ObstacleLabel::floor
+                                : is_obstacle ? ObstacleLabel::obstacle
+                                              : ObstacleLabel::unknown;
     out[x] = row.object[x] != ObjectId::none ? ObstacleLabel::obstacle : alone;
   }
 }
@@ -94,7 +88,7 @@ inline void mark_kinds(const KindRow& given, float margin, int width, FloorKind*
   }
 }
 
-inline constexpr ObstacleKernels kSpaceKernels{look_behind, mark_floor, label, place, mark_kinds};
+inline constexpr ObstacleKernels kSpaceKernels{look_behind, label, place, mark_kinds};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -31,8 +31,10 @@ struct BackdropRow {
 struct SpaceRow {
   const ObjectId* object;
   const float* disparity;
+  const float* surface;
   const float* confidence;
   const float* floor_probability;  // NaN: unknown
+  const float* free_floor;
   const float* barrier;
 };
 
@@ -57,9 +59,6 @@ struct PlacedRow {
 struct ObstacleKernels {
   /// For the pixels of row y.
   void (*look_behind)(const Backdrop& backdrop, int y, int width, const BackdropRow& out);
-  /// 1 for disparities within the margin of the floor, else NaN.
-  void (*mark_floor)(const float* surface_disparity_px, const float* free_floor_px, float margin, int width,
-                     float* floor_probability);
   /// As label_obstacles() defines it.
   void (*label)(const SpaceRow& row, float margin, int width, ObstacleLabel* out);
   /// As obstacle_disparities() defines it, for row y above the floor's plane.

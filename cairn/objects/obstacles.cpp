@@ -71,18 +71,14 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
   parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
     BackgroundRow behind(cues, rig, exec);
     SeenRow seen(cues);
-    std::vector<float> likely_floor(slot(width));
+    const std::vector<float> not_judged(cues.floor_probability.empty() ? slot(width) : 0, kNan);
     for (int y = first; y < last; ++y) {
       behind.look_at(y);
       seen.look_at(y);
-      run.mark_floor(seen.surface_px(), behind.free_floor_px(), config.margin, width, likely_floor.data());
-      if (!cues.floor_probability.empty()) {
-        const float* const judged = cues.floor_probability.row(y);
-        for (int x = 0; x < width; ++x)
-          likely_floor[slot(x)] = judged[x] == judged[x] ? judged[x] : likely_floor[slot(x)];
-      }
-      run.label({cues.objects.row(y), seen.disparity_px(), seen.confidence(), likely_floor.data(),
-                 behind.barrier_px()},
+      const float* const likely_floor =
+          cues.floor_probability.empty() ? not_judged.data() : cues.floor_probability.row(y);
+      run.label({cues.objects.row(y), seen.disparity_px(), seen.surface_px(), seen.confidence(), likely_floor,
+                 behind.free_floor_px(), behind.barrier_px()},
                 config.margin, width, space.row(y));
       for (int x = 0; x < width; ++x) {
         if (has(cues.disparity.reject(x, y), Reject::sky) && cues.objects(x, y) == ObjectId::none)

@@ -293,8 +293,8 @@ def floor_probability(objects: Objects, disparity: DisparityLike, confidence: Di
                       background: Background, surface_disparity_px: DisparitiesLike, superpixels: Superpixels,
                       refined: RefinedDisparity, hints: HintsLike, rig: RigLike = None) -> NDArray[numpy.float32]:
     """The probability that a pixel shows the floor, by fitted trees: (H, W) float32, 0 to 1; NaN in objects, in the sky, above
-    the horizon, where a wall hides the floor, and in groups of one or two pixels. surface_disparity_px: from floor_under_reflections(). hints: from
-    hint_objects(). refined: from without_sky()."""
+    the horizon, where a wall hides the floor, and in groups of one or two pixels. surface_disparity_px: from
+    floor_under_reflections(). hints: from hint_objects(). refined: from without_sky()."""
 
 
 def label_obstacles(objects: Objects, disparity: DisparityLike, confidence: DisparitiesLike, ground: Ground,

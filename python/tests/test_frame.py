@@ -81,7 +81,9 @@ def test_obstacles_are_reported_whether_objects_or_not(sample):
     assert set(np.unique(frame.space)) == {0, 128, 255}
     assert (frame.space[frame.objects_map > 0] == 255).all() and same(frame.floor, (frame.space == 128).astype(np.uint8) * 255)
     reasons = {left.reason for left in frame.left_out}
-    assert reasons == {"background", "too small"} and repr(frame.left_out[0]).startswith("LeftOut(reason='")
+    sure = cairn.segment(sample.left, sample.right, sample.calibration, objects={"min_confidence": 0.97})
+    reasons |= {left.reason for left in sure.left_out}
+    assert reasons == {"background", "too small", "low confidence"} and repr(frame.left_out[0]).startswith("LeftOut(reason='")
     scan, grid = frame.scan(), frame.grid()
     seen = scan.ranges_m[np.isfinite(scan.ranges_m)]
     assert len(scan) == len(scan.ranges_m) and 1 < seen.min() < frame.objects[0].distance_m
