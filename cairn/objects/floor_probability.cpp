@@ -17,9 +17,7 @@ namespace {
 
 constexpr int kGrain = 64;  // rows
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kLowest = -8, kHighest = 16;  // px from the floor; beyond, all disparities are alike
-constexpr int kSteps = 64;                    // of a px
-constexpr int kSureSteps = 256;               // of a confidence of 1
+using kernels::HeightsOut;
 
 constexpr std::array<std::string_view, kFloorFeatures> kNames{
     "kind",
@@ -47,6 +45,14 @@ struct FloorSums {
     std::int64_t known = 0, height = 0, confidence = 0;
     std::int64_t on = 0, front = 0;            // within the margin of the floor, nearer
     std::int64_t sure_on = 0, sure_front = 0;  // their confidences
+    void add(std::int32_t steps, std::int32_t marks) {
+      const std::int32_t sure = marks & HeightsOut::kSure;
+      const bool is_on = (marks & HeightsOut::kOn) != 0;
+      const bool is_front = (marks & HeightsOut::kFront) != 0;
+      known += (marks & HeightsOut::kKnown) != 0 ? 1 : 0, height += steps, confidence += sure;
+      on += is_on ? 1 : 0, front += is_front ? 1 : 0;
+      sure_on += is_on ? sure : 0, sure_front += is_front ? sure : 0;
+    }
     void add(const Disparities& other) {
       known += other.known, height += other.height, confidence += other.confidence;
       on += other.on, front += other.front;
@@ -62,21 +68,6 @@ struct FloorSums {
     matched.add(other.matched), refined.add(other.refined);
   }
 };
-
-/// A disparity, NaN for a hole, and its confidence, relative to the floor.
-void add(FloorSums::Disparities& to, float disparity_px, float confidence, float floor_px, float margin) {
-  if (std::isnan(disparity_px)) return;
-  const float height = disparity_px - floor_px;
-  const float share = confidence > 0 ? std::min(confidence, 1.0F) : 0;
-  const auto sure = static_cast<std::int64_t>(share * kSureSteps + 0.5F);
-  const bool on = std::abs(height) <= margin;
-  const bool front = height > margin;
-  ++to.known;
-  to.height += static_cast<std::int64_t>((std::clamp(height, kLowest, kHighest) - kLowest) * kSteps + 0.5F);
-  to.confidence += sure;
-  to.on += on ? 1 : 0, to.front += front ? 1 : 0;
-  to.sure_on += on ? sure : 0, to.sure_front += front ? sure : 0;
-}
 
 class FloorGrouping {
  public:
@@ -108,7 +99,7 @@ class FloorGrouping {
     std::mutex lock;
     parallel_for(exec_, size_.height, kGrain, [&](int first, int last) {
       BackgroundRow behind(cues_, rig_, exec_);
-      SeenRow seen(cues_);
+      SeenRow seen(cues_, exec_);
       std::size_t lowest = std::numeric_limits<std::size_t>::max();  // superpixel
       std::size_t highest = 0;
       for (int y = first; y < last; ++y) {
@@ -123,7 +114,8 @@ class FloorGrouping {
         highest = std::max(highest, index(*high));
       }
       std::vector<FloorSums> sums(kFloorKinds * (highest + 1 - lowest));
-      for (int y = first; y < last; ++y) sum_up(y, lowest, sums);
+      RowSteps steps(size_.width);
+      for (int y = first; y < last; ++y) sum_up(y, lowest, steps, sums);
       const std::lock_guard guard(lock);
       if (sums_.size() < kFloorKinds * (highest + 1)) sums_.resize(kFloorKinds * (highest + 1));
       for (std::size_t i = 0; i < sums.size(); ++i) sums_[kFloorKinds * lowest + i].add(sums[i]);
@@ -143,26 +135,44 @@ class FloorGrouping {
   }
 
  private:
+  /// Of one row, relative to the floor.
+  struct RowSteps {
+    explicit RowSteps(int width)
+        : trusted(slot(width), 1.0F),
+          matched_height(slot(width)),
+          matched_marks(slot(width)),
+          refined_height(slot(width)),
+          refined_marks(slot(width)) {}
+    std::vector<float> trusted;  // all of it
+    std::vector<std::int32_t> matched_height, matched_marks, refined_height, refined_marks;
+  };
+
   /// Every second pixel, as on a chequerboard.
-  void sum_up(int y, std::size_t first_superpixel, std::vector<FloorSums>& sums) const {
-    const float* const matched = surface_px_.row(y);
-    const float* const sure = cues_.confidence.empty() ? nullptr : cues_.confidence.row(y);
-    const float* const refined = cues_.refined_px.row(y);
-    const float* const likely = cues_.refined_confidence.row(y);
+  void sum_up(int y, std::size_t first_superpixel, RowSteps& row, std::vector<FloorSums>& sums) const {
+    const auto steps = kernels::obstacle_kernels(exec_).in_steps_from_floor;
+    const float* const sure = cues_.confidence.empty() ? row.trusted.data() : cues_.confidence.row(y);
+    steps(surface_px_.row(y), sure, y, floor_, margin_, size_.width,
+          {row.matched_height.data(), row.matched_marks.data()});
+    steps(cues_.refined_px.row(y), cues_.refined_confidence.row(y), y, floor_, margin_, size_.width,
+          {row.refined_height.data(), row.refined_marks.data()});
     const RegionId* const superpixel = cues_.superpixels.row(y);
     const FloorKind* const kinds = kinds_.row(y);
     const ObjectHint* const hint = hints_.empty() ? nullptr : hints_.row(y * hints_.height() / size_.height);
-    for (int x = y % 2; x < size_.width; x += 2) {
-      const float floor_px = floor_.disparity_px(static_cast<float>(x), static_cast<float>(y));
-      FloorSums& to = sums[FloorGroups::group(superpixel[x], kinds[x]) - kFloorKinds * first_superpixel];
-      ++to.pixels;
-      to.x += x, to.y += y;
-      if (hint != nullptr) {
-        const ObjectHint& at = hint[column_[slot(x)]];
-        to.object += at.object, to.outline += at.outline;
+    for (int x = y % 2; x < size_.width;) {
+      FloorSums run;  // of pixels of one group
+      const std::size_t group = FloorGroups::group(superpixel[x], kinds[x]);
+      for (; x < size_.width && FloorGroups::group(superpixel[x], kinds[x]) == group; x += 2) {
+        ++run.pixels;
+        run.x += x;
+        if (hint != nullptr) {
+          const ObjectHint& at = hint[column_[slot(x)]];
+          run.object += at.object, run.outline += at.outline;
+        }
+        run.matched.add(row.matched_height[slot(x)], row.matched_marks[slot(x)]);
+        run.refined.add(row.refined_height[slot(x)], row.refined_marks[slot(x)]);
       }
-      add(to.matched, matched[x], sure == nullptr ? 1.0F : sure[x], floor_px, margin_);
-      add(to.refined, refined[x], likely[x], floor_px, margin_);
+      run.y = run.pixels * y;
+      sums[group - kFloorKinds * first_superpixel].add(run);
     }
   }
 
@@ -172,7 +182,8 @@ class FloorGrouping {
       return n > 0 ? static_cast<double>(sum) / static_cast<double>(n) / steps : double{kUnknown};
     };
     const auto height = [&](const FloorSums::Disparities& of) {
-      return of.known > 0 ? mean(of.height, of.known, kSteps) + double{kLowest} : double{kUnknown};
+      return of.known > 0 ? mean(of.height, of.known, HeightsOut::kSteps) + double{HeightsOut::kLowest}
+                          : double{kUnknown};
     };
     const auto n = static_cast<double>(group.pixels);
     const auto x = static_cast<float>(static_cast<double>(group.x) / n);
@@ -186,9 +197,9 @@ class FloorGrouping {
     };
     const std::array values{double{kind},
                             height(group.matched),
-                            mean(group.matched.confidence, group.matched.known, kSureSteps),
+                            mean(group.matched.confidence, group.matched.known, HeightsOut::kSureSteps),
                             above,
-                            mean(group.refined.confidence, group.pixels, kSureSteps),
+                            mean(group.refined.confidence, group.pixels, HeightsOut::kSureSteps),
                             mean(group.refined.on, group.pixels, 1),
                             hint(group.object, group.pixels),
                             hint(group.outline, group.pixels),
@@ -199,8 +210,8 @@ class FloorGrouping {
                             mean(superpixel.matched.known, superpixel.pixels, 1),
                             mean(superpixel.matched.on, superpixel.pixels, 1),
                             mean(superpixel.matched.front, superpixel.pixels, 1),
-                            mean(superpixel.refined.sure_on, superpixel.pixels, kSureSteps),
-                            mean(superpixel.refined.sure_front, superpixel.pixels, kSureSteps),
+                            mean(superpixel.refined.sure_on, superpixel.pixels, HeightsOut::kSureSteps),
+                            mean(superpixel.refined.sure_front, superpixel.pixels, HeightsOut::kSureSteps),
                             hint(superpixel.object, superpixel.pixels)};
     FloorFeatures features{};
     std::transform(values.begin(), values.end(), features.begin(),

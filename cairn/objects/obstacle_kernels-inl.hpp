@@ -36,6 +36,38 @@ inline void look_behind(const Backdrop& backdrop, int y, int width, const Backdr
   }
 }
 
+inline void in_steps_from_floor(const float* disparity_px, const float* confidence, int y,
+                                const GroundPlane& floor, float margin, int width, const HeightsOut& out) {
+  using Out = HeightsOut;
+  const GroundPlane plane = floor;
+  std::int32_t* CAIRN_RESTRICT const heights = out.height;
+  std::int32_t* CAIRN_RESTRICT const marks = out.marks;
+  for (int x = 0; x < width; ++x) {
+    const float d = disparity_px[x];
+    const float height = d - plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
+    const float least = height > Out::kLowest ? height : Out::kLowest;  // of NaN, too
+    const float limited = least < Out::kHighest ? least : Out::kHighest;
+    const float likely = confidence[x] > 0 ? confidence[x] : 0;
+    const float share = likely < 1 ? likely : 1;
+    const std::int32_t known = -static_cast<std::int32_t>(d == d);
+    const std::int32_t on = std::abs(height) <= margin ? Out::kOn : 0;
+    const std::int32_t front = height > margin ? Out::kFront : 0;
+    heights[x] = static_cast<std::int32_t>((limited - Out::kLowest) * Out::kSteps + 0.5F) & known;
+    marks[x] = (static_cast<std::int32_t>(share * Out::kSureSteps + 0.5F) | on | front | Out::kKnown) & known;
+  }
+}
+
+inline void prefer_refined(const SeenPixels& matched, const float* refined, const float* refined_confidence,
+                           float least, int width, const SeenPixelsOut& out) {
+  const SeenPixels from = matched;
+  const auto take = [=](const float* better, const float* other, float* CAIRN_RESTRICT to) {
+    for (int x = 0; x < width; ++x) to[x] = refined_confidence[x] >= least ? better[x] : other[x];
+  };
+  take(refined, from.disparity, out.disparity);
+  take(refined, from.surface, out.surface);
+  take(refined_confidence, from.confidence, out.confidence);
+}
+
 inline void label(const SpaceRow& given, float margin, int width, ObstacleLabel* CAIRN_RESTRICT out) {
   constexpr float kRatherRight = 0.5F;
   const SpaceRow row = given;
@@ -88,7 +120,8 @@ inline void mark_kinds(const KindRow& given, float margin, int width, FloorKind*
   }
 }
 
-inline constexpr ObstacleKernels kSpaceKernels{look_behind, label, place, mark_kinds};
+inline constexpr ObstacleKernels kSpaceKernels{in_steps_from_floor, prefer_refined, look_behind, label, place,
+                                               mark_kinds};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -56,7 +56,35 @@ struct PlacedRow {
 };
 
 /// Plain loops that compilers vectorise, as in PointKernels.
+/// What a disparity is and how sure it is; surface: see ObstacleCues.
+struct SeenPixels {
+  const float* disparity;
+  const float* surface;
+  const float* confidence;
+};
+struct SeenPixelsOut {
+  float* disparity;
+  float* surface;
+  float* confidence;
+};
+
+/// Disparities relative to the floor's plane, in whole numbers; 0 for a hole.
+struct HeightsOut {
+  static constexpr float kLowest = -8, kHighest = 16;  // px from the floor; beyond, all disparities are alike
+  static constexpr int kSteps = 64;                    // of a px
+  static constexpr int kSureSteps = 256;               // of a confidence of 1
+  static constexpr std::int32_t kSure = 0x3ff, kOn = 1 << 10, kFront = 1 << 11, kKnown = 1 << 12;
+  std::int32_t* height;  // from kLowest
+  std::int32_t* marks;   // the confidence in kSure; within the margin of the floor, nearer, no hole
+};
+
 struct ObstacleKernels {
+  /// Of row y.
+  void (*in_steps_from_floor)(const float* disparity_px, const float* confidence, int y,
+                              const GroundPlane& floor, float margin, int width, const HeightsOut& out);
+  /// The matches of a row, or the refined disparities in their place where their confidence is at least `least`.
+  void (*prefer_refined)(const SeenPixels& matched, const float* refined, const float* refined_confidence,
+                         float least, int width, const SeenPixelsOut& out);
   /// For the pixels of row y.
   void (*look_behind)(const Backdrop& backdrop, int y, int width, const BackdropRow& out);
   /// As label_obstacles() defines it.

@@ -46,8 +46,9 @@ class BackgroundRow {
 /// The disparities of a row, with the likely ones of the refined in their place.
 class SeenRow {
  public:
-  explicit SeenRow(const ObstacleCues& cues)
+  SeenRow(const ObstacleCues& cues, const Exec& exec)
       : cues_(cues),
+        run_(kernels::obstacle_kernels(exec)),
         surfaces_(cues.surface_disparity_px.empty() ? cues.disparity.disparity_px.view()
                                                     : cues.surface_disparity_px),
         all_trusted_(cues.confidence.empty() ? slot(surfaces_.width()) : 0, 1.0F) {
@@ -60,14 +61,9 @@ class SeenRow {
     surface_ = surfaces_.row(y);
     confidence_ = cues_.confidence.empty() ? all_trusted_.data() : cues_.confidence.row(y);
     if (cues_.refined_px.empty()) return;
-    const float* const refined = cues_.refined_px.row(y);
-    const float* const likely = cues_.refined_confidence.row(y);
-    for (int x = 0; x < surfaces_.width(); ++x) {
-      const bool better = likely[x] >= kLikelyRefined;
-      own_disparity_[slot(x)] = better ? refined[x] : disparity_[x];
-      own_surface_[slot(x)] = better ? refined[x] : surface_[x];
-      own_confidence_[slot(x)] = better ? likely[x] : confidence_[x];
-    }
+    run_.prefer_refined({disparity_, surface_, confidence_}, cues_.refined_px.row(y),
+                        cues_.refined_confidence.row(y), kLikelyRefined, surfaces_.width(),
+                        {own_disparity_.data(), own_surface_.data(), own_confidence_.data()});
     disparity_ = own_disparity_.data();
     surface_ = own_surface_.data();
     confidence_ = own_confidence_.data();
@@ -78,6 +74,7 @@ class SeenRow {
 
  private:
   const ObstacleCues& cues_;
+  const kernels::ObstacleKernels& run_;
   View<const float> surfaces_;
   std::vector<float> all_trusted_;
   std::vector<float> own_disparity_, own_surface_, own_confidence_;

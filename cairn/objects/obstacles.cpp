@@ -70,7 +70,7 @@ Image<ObstacleLabel> label_obstacles(const ObstacleCues& cues, const std::option
   const int width = space.width();
   parallel_for(exec, space.height(), kGrain, [&](int first, int last) {
     BackgroundRow behind(cues, rig, exec);
-    SeenRow seen(cues);
+    SeenRow seen(cues, exec);
     const std::vector<float> not_judged(cues.floor_probability.empty() ? slot(width) : 0, kNan);
     for (int y = first; y < last; ++y) {
       behind.look_at(y);

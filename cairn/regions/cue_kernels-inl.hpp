@@ -32,6 +32,89 @@ inline void in_steps(const float* disparity_px, float above, int width, std::int
   }
 }
 
+/// −1 for a disparity, 0 for a hole. Without branches, because valid disparities are unpredictable.
+inline std::int32_t mask_of(std::int32_t steps) {
+  return -static_cast<std::int32_t>(steps != kNoDisparity);
+}
+
+inline void sum_moments(const std::int32_t* steps, int x, int count, RunMoments& sums) {
+  std::int64_t n = 0, of_x = 0, xx = 0, d = 0, xd = 0, dd = 0;
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t mask = mask_of(steps[i]);
+    const std::int32_t at_x = (x + i) & mask;
+    const std::int32_t at_d = steps[i] & mask;
+    n -= mask;
+    of_x += at_x;
+    xx += std::int64_t{at_x} * at_x;
+    d += at_d;
+    xd += std::int64_t{at_x} * at_d;
+    dd += std::int64_t{at_d} * at_d;
+  }
+  sums = {n, of_x, xx, d, xd, dd};
+}
+
+inline void sum_heights(const std::int32_t* steps, const std::int32_t* textured, const std::int32_t* behind,
+                        int count, RunHeights& all, RunHeights& of_textured) {
+  constexpr std::int32_t kLeast = clamped_height(kNoDisparity), kMost = clamped_height(-(kNoDisparity + 1));
+  RunHeights sums;
+  RunHeights textured_sums;
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t known = mask_of(steps[i]) & mask_of(behind[i]);
+    const std::int32_t height = std::min(std::max((steps[i] & known) - (behind[i] & known), kLeast), kMost);
+    const std::int32_t square = height * height;
+    const std::int32_t farther = -static_cast<std::int32_t>(height < -kDisparitySteps);
+    const std::int32_t on = known & -static_cast<std::int32_t>(std::abs(height) <= kDisparitySteps);
+    // The textured disparities are a subset of all disparities.
+    const std::int32_t mask = mask_of(textured[i]);
+    sums.n -= known;
+    sums.sum += height;
+    sums.squares += square;
+    sums.behind -= farther;
+    sums.on -= on;
+    textured_sums.n -= known & mask;
+    textured_sums.sum += height & mask;
+    textured_sums.squares += square & mask;
+    textured_sums.behind -= farther & mask;
+    textured_sums.on -= on & mask;
+  }
+  all = sums;
+  of_textured = textured_sums;
+}
+
+inline void take_planes(const float* disparity_px, int y, int first, int last, const SuperpixelPlanes& planes,
+                        float least, float most, float* CAIRN_RESTRICT refined_px,
+                        std::int32_t* CAIRN_RESTRICT group) {
+  const GroundPlane main = planes.main, second = planes.second;
+  const auto [on_main, on_second, nearer, farther, holes] = planes.chosen;
+  const auto fy = static_cast<float>(y);
+  const float* const matched = disparity_px + first;
+  for (int i = 0; i < last - first; ++i) {
+    const auto fx = static_cast<float>(first + i);
+    const float d = matched[i];
+    const float before = d - (main.a * fx + main.b * fy + main.c);
+    const float before_second = d - (second.a * fx + second.b * fy + second.c);
+    const bool is_farther = before < 0;
+    const bool is_on_second = std::abs(before_second) <= kNearPlane;
+    const bool is_on_main = std::abs(before) <= kNearPlane;
+    const bool is_hole = d != d;
+    const auto of_group = [&](auto at_main, auto at_second, auto near, auto far, auto hole) {
+      auto value = is_farther ? far : near;
+      value = is_on_second ? at_second : value;
+      value = is_on_main ? at_main : value;
+      return is_hole ? hole : value;
+    };
+    const float a = of_group(on_main.a, on_second.a, nearer.a, farther.a, holes.a);
+    const float b = of_group(on_main.b, on_second.b, nearer.b, farther.b, holes.b);
+    const float c = of_group(on_main.c, on_second.c, nearer.c, farther.c, holes.c);
+    group[i] = of_group(0, 1, 2, 3, 4);  // as Group has it
+    const float on = a * fx + b * fy + c;
+    const float kept = std::abs(d - on) <= kOnPlane ? d : on;
+    const float refined = on == on ? kept : d;
+    const float limited = refined < least ? least : refined;
+    refined_px[i] = limited > most ? most : limited;
+  }
+}
+
 inline void add_steps(const std::uint16_t* edges, const StepRows& rows, int width, const StepSum& by,
                       std::uint16_t* CAIRN_RESTRICT out) {
   const auto [up, here, down] = rows;
@@ -92,7 +175,8 @@ inline void sum_trees(const FittedTrees::Split* splits, const float* leaves, std
   }
 }
 
-inline constexpr CueKernels kCueKernels{nearest_plane, in_steps, add_steps, halve, sum_trees};
+inline constexpr CueKernels kCueKernels{nearest_plane, in_steps,  sum_moments, sum_heights,
+                                        take_planes,   add_steps, halve,       sum_trees};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -4,8 +4,10 @@
 #include <cairn/core/parallel.hpp>
 #include <cairn/core/statistics.hpp>
 #include <cairn/fitted/fitted.hpp>
+#include <cairn/regions/cue_kernels.hpp>
 #include <cairn/regions/object_hints.hpp>
 #include <cairn/regions/refine_disparity.hpp>
+#include <cairn/scene/plane_kernels.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -17,9 +19,8 @@ constexpr int kGrain = 8;             // superpixels
 constexpr std::int64_t kMinMain = 6;  // disparities for a plane
 constexpr std::int64_t kMinTextured = 4;
 constexpr std::size_t kMaxNeighbours = 8;
-constexpr std::size_t kMinGroup = 4;                  // pixels; smaller groups keep their disparities
-constexpr double kNearPlane = 1.5;                    // px; of the pixels of a plane
-constexpr double kOnPlane = 1;                        // px; as near as the truth is asked for
+constexpr std::size_t kMinGroup = 2;                  // samples; smaller groups keep their disparities
+constexpr std::int64_t kEnough = 512;                 // pixels for each stride² of the samples
 constexpr double kSameMiddle = 0.5, kSameCorner = 1;  // px; planes that do not differ by more are one
 constexpr double kBeyondRange = 3;                    // px; planes farther beyond all disparities are refused
 constexpr double kLevelling = 4e-4;                   // damping of slopes: a spread in image widths²
@@ -29,11 +30,29 @@ constexpr float kPreferred = 0.05F;  // of keeping the disparities
 constexpr float kKeptBias = -0.32F, kKeptChoice = 0.87F, kKeptMatch = 0.27F;
 constexpr float kLeast = 0.005F;  // probability, for these log-odds
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+using kernels::kNearPlane;
+using kernels::kOnPlane;
 
 enum Group : std::uint8_t { on_main, on_second, nearer, farther, holes };
 constexpr std::size_t kGroups = 5;
 
 using Pixels = std::vector<SuperpixelPixel>;
+
+/// The same points once more, for kernels.
+struct PixelArrays {
+  std::vector<float> x, y, d;
+  void set(const Pixels& pixels) {
+    x.clear(), y.clear(), d.clear();
+    for (const SuperpixelPixel& p : pixels) {
+      x.push_back(static_cast<float>(p.x));
+      y.push_back(static_cast<float>(p.y));
+      d.push_back(p.disparity_px);
+    }
+  }
+  [[nodiscard]] kernels::PointArrays points() const {
+    return {x.data(), y.data(), d.data(), nullptr, static_cast<int>(x.size())};
+  }
+};
 
 constexpr std::array<std::string_view, kPlaneFeatures> kNames{
     "kept as it is",
@@ -104,8 +123,14 @@ struct OwnPlanes {
   double main_share = 0;  // of its pixels
 };
 
-bool is_near(const DisparityPlane& plane, const SuperpixelPixel& p, double within) {
-  return std::abs(double{p.disparity_px} - plane.at(p.x, p.y)) <= within;
+bool is_near(const DisparityPlane& plane, const SuperpixelPixel& p, float within) {
+  return std::abs(double{p.disparity_px} - plane.at(p.x, p.y)) <= double{within};
+}
+
+/// For kernels.
+GroundPlane in_floats(const std::optional<DisparityPlane>& plane) {
+  if (!plane) return {kNan, kNan, kNan};
+  return {static_cast<float>(plane->a), static_cast<float>(plane->b), static_cast<float>(plane->c)};
 }
 
 /// How many disparities there are of each whole number.
@@ -190,6 +215,8 @@ class Refiner {
       : in_(in),
         right_plane_(right_plane),
         exec_(exec),
+        count_on_(kernels::plane_kernels(exec).count_on),
+        take_planes_(kernels::cue_kernels(exec).take_planes),
         on_judged_(on_judged),
         regions_(in.tree.superpixel_cues.regions),
         contacts_(in.tree.superpixel_cues.contacts),
@@ -226,7 +253,7 @@ class Refiner {
       for (auto i = slot(first); i < slot(last); ++i) judge(i, work);
       choose(work);
       for (auto i = slot(first); i < slot(last); ++i)
-        write(i, work.chosen.data() + (i - slot(first)) * kGroups);
+        write(i, work.chosen.data() + (i - slot(first)) * kGroups, work);
     });
     return std::move(out_);
   }
@@ -250,22 +277,36 @@ class Refiner {
     std::vector<std::optional<DisparityPlane>> planes;
     std::vector<std::size_t> ends;  // of each group's choices
     std::vector<Chosen> chosen;     // of each group
+    // Of one row:
+    std::vector<float> refined_px;
+    std::vector<std::int32_t> group_of;
     // Of one superpixel:
     Pixels pixels;
     std::array<Pixels, kGroups> groups;
+    std::array<PixelArrays, holes> points;  // of the groups
     std::vector<Candidate> candidates;
   };
 
-  /// Every second pixel, as on a chequerboard.
+  /// The distance of samples, px: a large superpixel needs no more of them than a small one.
+  [[nodiscard]] int stride_of(std::size_t i) const {
+    int stride = 1;
+    while (regions_[i].area >= (stride + 1) * (stride + 1) * kEnough) ++stride;
+    return stride;
+  }
+
+  /// Every second pixel of a grid, as on a chequerboard.
   void collect(std::size_t i, Pixels& pixels) const {
     pixels.clear();
     const RegionCues& region = regions_[i];
-    for (int y = region.top; y <= region.bottom; ++y) {
+    const int stride = stride_of(i);
+    for (int v = (region.top + stride - 1) / stride; v * stride <= region.bottom; ++v) {
+      const int y = v * stride;
       const RegionId* const label = in_.superpixels.labels.row(y);
       const float* const d = in_.cues.disparity_px.row(y);
       const float* const textured = in_.cues.textured_px.row(y);
       const float* const confidence = in_.confidence.empty() ? nullptr : in_.confidence.row(y);
-      for (int x = region.left + (region.left + y) % 2; x <= region.right; x += 2) {
+      const int u = (region.left + stride - 1) / stride;
+      for (int x = (u + (u + v) % 2) * stride; x <= region.right; x += 2 * stride) {
         if (index(label[x]) == i)
           pixels.push_back({x, y, d[x], confidence ? confidence[x] : 0.0F, !std::isnan(textured[x])});
       }
@@ -434,7 +475,8 @@ class Refiner {
   /// A superpixel's numbers that its choices share.
   struct Judging {
     std::size_t superpixel;
-    double pixels, known;  // those that are looked at, and those of them with a disparity
+    double pixels, known;  // samples, and those of them with a disparity
+    double per_sample;     // pixels
     double background_px;
   };
 
@@ -449,7 +491,7 @@ class Refiner {
     const std::array values{kept ? 1.0 : 0.0,
                             static_cast<double>(group),
                             seen.n / of.pixels,
-                            2 * seen.n / static_cast<double>(size_.area()),
+                            of.per_sample * seen.n / static_cast<double>(size_.area()),
                             has_disparity ? seen.textured : unknown,
                             has_disparity ? seen.spread : unknown,
                             has_disparity && !in_.confidence.empty() ? seen.confidence : unknown,
@@ -477,30 +519,29 @@ class Refiner {
     return features;
   }
 
-  static std::size_t count_on(const Pixels& pixels, const DisparityPlane& plane) {
-    std::size_t on = 0;
-    for (const SuperpixelPixel& p : pixels) on += is_near(plane, p, kOnPlane) ? 1U : 0U;
-    return on;
-  }
-
   /// Appends the choices of each group.
   void judge(std::size_t i, Work& work) {
     collect(i, work.pixels);
     for (Pixels& group : work.groups) group.clear();
     for (const SuperpixelPixel& p : work.pixels) work.groups[group_of(own_[i], p)].push_back(p);
+    for (std::size_t g = 0; g < holes; ++g) work.points[g].set(work.groups[g]);
     const auto pixels = static_cast<double>(work.pixels.size());
     const double known = pixels - static_cast<double>(work.groups[holes].size());
-    const Judging judging{i, pixels, known, list_candidates(i, work.candidates)};
+    const double per_sample = 2.0 * stride_of(i) * stride_of(i);
+    const Judging judging{i, pixels, known, per_sample, list_candidates(i, work.candidates)};
     for (Candidate& candidate : work.candidates) {
-      count_pixels_on(work.groups, known, candidate);
+      count_pixels_on(work.points, known, candidate);
       compare_with_neighbours(i, candidate);
     }
     for (std::size_t g = 0; g < kGroups; ++g) judge_group(judging, static_cast<Group>(g), work);
   }
 
-  static void count_pixels_on(const std::array<Pixels, kGroups>& groups, double known, Candidate& candidate) {
+  void count_pixels_on(const std::array<PixelArrays, holes>& groups, double known,
+                       Candidate& candidate) const {
+    const GroundPlane plane = in_floats(candidate.plane);
     std::size_t sum = 0;
-    for (std::size_t g = 0; g < holes; ++g) sum += candidate.on[g] = count_on(groups[g], candidate.plane);
+    for (std::size_t g = 0; g < holes; ++g)
+      sum += candidate.on[g] = slot(count_on_(groups[g].points(), plane, kOnPlane));
     candidate.matched_on = static_cast<double>(sum) / std::max(1.0, known);
   }
 
@@ -512,7 +553,7 @@ class Refiner {
       if (group != holes) {
         Candidate as_it_is = group == on_main ? work.candidates.front() : Candidate{{0, 0, seen.d}};
         if (group != on_main) {
-          count_pixels_on(work.groups, of.known, as_it_is);
+          count_pixels_on(work.points, of.known, as_it_is);
           compare_with_neighbours(of.superpixel, as_it_is);
         }
         work.planes.emplace_back();
@@ -548,26 +589,36 @@ class Refiner {
   }
 
   /// All pixels of a superpixel. `chosen`: of its groups.
-  void write(std::size_t i, const Chosen* chosen) {
+  void write(std::size_t i, const Chosen* chosen, Work& work) {
     const RegionCues& region = regions_[i];
+    kernels::SuperpixelPlanes planes{in_floats(own_[i].main), in_floats(own_[i].second), {}};
+    std::array<float, kGroups> kept{};  // log-odds, without those of the match
+    for (std::size_t g = 0; g < kGroups; ++g) {
+      planes.chosen[g] = in_floats(chosen[g].plane);
+      kept[g] = kKeptBias + kKeptChoice * chosen[g].log_odds;
+    }
+    work.refined_px.resize(slot(size_.width));
+    work.group_of.resize(slot(size_.width));
     for (int y = region.top; y <= region.bottom; ++y) {
       const RegionId* const label = in_.superpixels.labels.row(y);
       const float* const matched = in_.cues.disparity_px.row(y);
       const float* const sure = in_.confidence.empty() ? nullptr : in_.confidence.row(y);
       float* const refined = out_.disparity_px.row(y);
       float* const confidence = out_.confidence.row(y);
+      take_planes_(matched, y, region.left, region.right + 1, planes, range_[0], range_[1],
+                   work.refined_px.data(), work.group_of.data());
       for (int x = region.left; x <= region.right; ++x) {
-        if (index(label[x]) != i) continue;
-        const SuperpixelPixel p{x, y, matched[x]};
-        const auto& [plane, log_odds] = chosen[group_of(own_[i], p)];
-        refined[x] = std::clamp(disparity_on(plane, p), range_[0], range_[1]);
-        if (std::isnan(refined[x])) {
-          confidence[x] = 0;
-        } else if (refined[x] != matched[x] || sure == nullptr || sure[x] == 0) {  // not a match's own
-          confidence[x] = tables_.likelihood_of(log_odds);
-        } else {
-          confidence[x] = tables_.likelihood_of(kKeptBias + kKeptChoice * log_odds +
-                                                kKeptMatch * tables_.odds_of(sure[x]));
+        // By runs and without branches, because what is kept is unpredictable.
+        for (; x <= region.right && index(label[x]) == i; ++x) {
+          const float d = work.refined_px[slot(x - region.left)];
+          const auto group = slot(work.group_of[slot(x - region.left)]);
+          const float of_match = sure ? sure[x] : 0.0F;
+          const bool is_own = (d == matched[x]) & (of_match > 0);  // a match's own
+          const float odds =
+              is_own ? kept[group] + kKeptMatch * tables_.odds_of(of_match) : chosen[group].log_odds;
+          const float likely = tables_.likelihood_of(odds);
+          refined[x] = d;
+          confidence[x] = d == d ? likely : 0;
         }
       }
     }
@@ -576,6 +627,8 @@ class Refiner {
   const RefinementCues& in_;
   const FittedTrees& right_plane_;
   const Exec& exec_;
+  decltype(kernels::PlaneKernels::count_on) count_on_;
+  decltype(kernels::CueKernels::take_planes) take_planes_;
   const std::function<void(const JudgedPlane&)>& on_judged_;
   const std::vector<RegionCues>& regions_;
   const std::vector<ContactCues>& contacts_;

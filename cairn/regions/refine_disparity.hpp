@@ -50,7 +50,7 @@ struct SuperpixelPixel {
 struct JudgedPlane {
   std::int32_t superpixel = 0;
   int group = 0;                            // 0 … 4, see refine_disparity()
-  std::span<const SuperpixelPixel> pixels;  // every second one, as on a chequerboard
+  std::span<const SuperpixelPixel> pixels;  // samples, see refine_disparity()
   std::optional<DisparityPlane> plane;
   const PlaneFeatures& features;
 };
@@ -62,8 +62,9 @@ float disparity_on(const std::optional<DisparityPlane>& plane, const SuperpixelP
 /// all), those farther, and holes. Each group keeps its disparities or takes a plane: the main, the second, the one
 /// through the textured disparities, those of ground and background, or the main planes of up to eight neighbours.
 /// `right_plane` gives the log-odds that a choice is right; the likeliest is made (keeping is preferred by 0.05; ties:
-/// the first), and stated as the confidence. Groups of fewer than 4 of every second pixel are kept, with log-odds of 0
-/// on the main plane and −2 elsewhere. Pixels within 1 px of the chosen plane keep their own disparity, too; for all that
+/// the first), and stated as the confidence. Samples are every second pixel, as on a
+/// chequerboard; of a superpixel of n²·512 px or more, of every n-th row and column. Groups of one sample are kept, with
+/// log-odds of 0 on the main plane and −2 elsewhere. Pixels within 1 px of the chosen plane keep their own disparity, too; for all that
 /// keep it, the confidence of the match counts. Values are limited to the range of all disparities.
 ///
 /// `right_plane`: plane_classifier(), or fitted. `on_judged`: called for each choice that was judged, in order, for

@@ -16,6 +16,8 @@ namespace {
 constexpr int kFar = 3;       // px to either side of a contact
 constexpr int kMinRows = 16;  // of a band
 using kernels::kNoDisparity;
+using kernels::RunHeights;
+using kernels::RunMoments;
 
 /// Histogram bin of a colour difference, −255 … 255.
 constexpr auto kBins = [] {
@@ -25,52 +27,11 @@ constexpr auto kBins = [] {
   return bins;
 }();
 
-/// A disparity, 0 for a hole.
-std::int32_t known(std::int32_t steps) {
-  return steps == kNoDisparity ? 0 : steps;
-}
-
 /// The smallest gradient that counts as an edge, in 1/4 grey level.
 float weakest_edge(float noise_sigma) {
   return 4.0F * (1.5F + 0.8F * noise_sigma);
 }
 
-/// The sums over a run of pixels in one row, kept in registers.
-struct RunMoments {
-  std::int64_t n = 0, x = 0, xx = 0, d = 0, xd = 0, dd = 0;
-  /// Branch-free, because valid disparities are unpredictable.
-  void add(std::int64_t at_x, std::int32_t disparity) {
-    const bool is_known = disparity != kNoDisparity;
-    const std::int64_t known_x = is_known ? at_x : 0;
-    const std::int64_t known_d = known(disparity);
-    n += is_known ? 1 : 0;
-    x += known_x;
-    xx += known_x * at_x;
-    d += known_d;
-    xd += known_d * at_x;
-    dd += known_d * known_d;
-  }
-  /// Sums for pixels of row y.
-  [[nodiscard]] PlaneMoments in_row(std::int64_t y) const {
-    return {n, x, n * y, xx, x * y, n * y * y, d, xd, d * y, dd};
-  }
-};
-
-/// Heights of up to kMax pixels, so that no 32-bit sum overflows: twice as many per vector as with 64 bits.
-struct RunHeights {
-  static constexpr std::int32_t kMax = 512;
-  std::int32_t n = 0, sum = 0, squares = 0, behind = 0, on = 0;
-  /// `height`: clamped, 0 if unknown. `is_known`: 0 or 1, branch-free, because valid disparities are
-  /// unpredictable.
-  void add(std::int32_t height, int is_known) {
-    n += is_known;
-    sum += height;
-    squares += height * height;
-    behind += height < -kDisparitySteps ? 1 : 0;
-    on += is_known & static_cast<int>(std::abs(height) <= kDisparitySteps);
-  }
-  [[nodiscard]] Heights heights() const { return {n, sum, squares, behind, on}; }
-};
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
 static_assert(kLargest / RunHeights::kMax / clamped_height(kLargest) >= clamped_height(kLargest));
 
@@ -144,16 +105,13 @@ class CueCollector {
   void add_run(RegionCues& region, int y, int first, int last) const {
     const int count = last - first;
     const int v = y - height_ / 2;
-    std::int64_t x = 0;
-    std::int64_t xx = 0;
-    for (int u = first - width_ / 2; u < last - width_ / 2; ++u) {
-      x += u;
-      xx += std::int64_t{u} * u;
-    }
+    const std::int64_t u = first - width_ / 2;
+    const std::int64_t steps = std::int64_t{count} * (count - 1) / 2;  // 0 + 1 + … + count − 1
+    const std::int64_t x = count * u + steps;
     region.area += count;
     region.x += x;
     region.y += std::int64_t{count} * v;
-    region.xx += xx;
+    region.xx += count * u * u + 2 * u * steps + steps * (2 * count - 1) / 3;
     region.xy += x * v;
     region.yy += std::int64_t{count} * v * v;
     region.left = std::min(region.left, first);
@@ -213,37 +171,34 @@ class CueCollector {
 
   void add_depth(RegionCues& region, int y, int first, int last) const {
     const std::int32_t* const d = steps_.row(y);
-    RunMoments matched;
-    RunMoments textured;
-    for (int x = first; x < last; ++x) {
-      matched.add(x - width_ / 2, d[x]);
-      textured.add(x - width_ / 2, textured_[slot(x)]);
-    }
-    region.matched.add(matched.in_row(y - height_ / 2));
-    region.textured.add(textured.in_row(y - height_ / 2));
+    add_moments(d, y, first, last, region.matched);
+    add_moments(textured_.data(), y, first, last, region.textured);
     if (cues_.ground.plane)
       add_heights(ground_, d, first, last, region.above_ground, region.textured_above_ground);
     if (!cues_.background.planes.empty())
       add_heights(background_, d, first, last, region.before_background, region.textured_before_background);
   }
 
+  void add_moments(const std::int32_t* steps, int row, int first, int last, PlaneMoments& to) const {
+    RunMoments of;
+    run_.sum_moments(steps + first, first - width_ / 2, last - first, of);
+    const std::int64_t y = row - height_ / 2;
+    to.add({of.n, of.x, of.n * y, of.xx, of.x * y, of.n * y * y, of.d, of.xd, of.d * y, of.dd});
+  }
+
   /// Adds the heights of a run's disparities, and of the textured ones, above the surface behind.
   void add_heights(const std::vector<std::int32_t>& behind, const std::int32_t* d, int first, int last,
                    Heights& all, Heights& textured) const {
+    const auto heights = [](const RunHeights& of) {
+      return Heights{of.n, of.sum, of.squares, of.behind, of.on};
+    };
     for (int begin = first; begin < last; begin += RunHeights::kMax) {
       RunHeights of_all;
       RunHeights of_textured;
-      for (int x = begin; x < std::min(begin + RunHeights::kMax, last); ++x) {
-        const std::int32_t base = behind[slot(x)];
-        const int is_known = static_cast<int>(base != kNoDisparity) & static_cast<int>(d[x] != kNoDisparity);
-        // The textured disparities are a subset of all disparities.
-        const int is_textured = is_known & static_cast<int>(textured_[slot(x)] != kNoDisparity);
-        const std::int32_t height = clamped_height(known(d[x]) - known(base)) & -is_known;
-        of_all.add(height, is_known);
-        of_textured.add(height & -is_textured, is_textured);
-      }
-      all.add(of_all.heights());
-      textured.add(of_textured.heights());
+      run_.sum_heights(d + begin, textured_.data() + begin, behind.data() + begin,
+                       std::min(RunHeights::kMax, last - begin), of_all, of_textured);
+      all.add(heights(of_all));
+      textured.add(heights(of_textured));
     }
   }
 

@@ -37,13 +37,15 @@ int rows_at_a_time(const SearchLayout& layout, const Exec& exec) {
   return kernels::round_up(rows, kernels::kRowsAbreast);
 }
 
-/// Rows of which costs and steps are kept: all of a small image. In a large one, computing them again costs less time
-/// than writing them to memory and reading them back. At least √height, for which bands and their starts together are
-/// smallest.
+/// Rows of which costs and steps are kept: all of a small image. Of a large one, as many as a second-level cache holds:
+/// computing them again costs less time than writing them to memory and reading them back. At least √height, for which
+/// bands and their starts together are smallest.
 int rows_of_band(const SearchLayout& layout) {
-  constexpr int kCandidates = 5 << 20;  // two bytes each
-  const int rows = std::max(kCandidates / (layout.width * layout.lanes),
-                            static_cast<int>(std::ceil(std::sqrt(static_cast<double>(layout.height)))));
+  constexpr int kSmall = 5 << 20, kCandidates = 1 << 20;  // two bytes each
+  const int of_row = layout.width * layout.lanes;
+  if (layout.height <= kSmall / of_row) return layout.height;
+  const int least = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(layout.height))));
+  const int rows = std::max(kCandidates / of_row, least);
   return std::min(layout.height, kernels::round_up(rows, kernels::kRowsAbreast));
 }
 
