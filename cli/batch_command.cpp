@@ -249,6 +249,7 @@ Work declare_batch(CLI::App& app) {
   app.add_flag("--rectify", options->inputs.rectify, "plan: rectification of raw images by --calib");
   app.add_flag("--scale-calibration", options->inputs.scale_calibration,
                "plan: scaling of a calibration for images of another size of the same shape");
+  add_binning_option(app, options->inputs.binning);
   app.add_option("--layout", options->inputs.layout,
                  "plan: layout of videos and images: side_by_side or top_bottom")
       ->type_name("NAME");
@@ -279,8 +280,8 @@ Work declare_batch(CLI::App& app) {
         }
       }
     };
-    of("plan", {"--calib", "--scale-calibration", "--rectify", "--layout", "--frames", "--tracks", "--preset",
-                "--config", "--set"});
+    of("plan", {"--calib", "--scale-calibration", "--binning", "--rectify", "--layout", "--frames",
+                "--tracks", "--preset", "--config", "--set"});
     of("work", {"--shard", "--keep", "--threads", "--target"});
     of("merge", {"--partial"});
     if (!options->output.empty() && (options->action == "work" || options->action == "status"))

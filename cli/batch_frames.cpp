@@ -127,6 +127,7 @@ class Planner {
     }
     if (files.grey_cameras) how["grey_cameras"] = true;
     if (inputs_.scale_calibration) how["scale_calibration"] = true;
+    if (inputs_.binning != 1) how["binning"] = inputs_.binning;
     frames_.push_back({name, std::move(how)});
   }
 
@@ -137,6 +138,7 @@ class Planner {
     sequence.layout = inputs_.layout;
     sequence.rectify = inputs_.rectify;
     sequence.scale_calibration = inputs_.scale_calibration;
+    sequence.binning = inputs_.binning;
     sequence.step = range_.step;
     if (!inputs_.calib.empty()) sequence.calib = whole(inputs_.calib);
     for (const std::size_t index : sequence_frames(sequence, range_, pool_)) {
@@ -147,6 +149,7 @@ class Planner {
       if (!sequence.layout.empty()) how["layout"] = sequence.layout;
       if (sequence.rectify) how["rectify"] = true;
       if (sequence.scale_calibration) how["scale_calibration"] = true;
+      if (sequence.binning != 1) how["binning"] = sequence.binning;
       if (!sequence.calib.empty()) {
         how["calib"] = sequence.calib;
         how["calib_sha256"] = sum_of(sequence.calib);
@@ -197,6 +200,7 @@ BatchSequence sequence_of(const PlannedFrame& frame) {
           text_at(frame, "layout"),
           value_at(frame, "rectify", false),
           value_at(frame, "scale_calibration", false),
+          value_at(frame, "binning", 1),
           value_at(frame, "step", std::size_t{1}),
           value_at(frame, "first", std::size_t{0})};
 }
@@ -264,6 +268,7 @@ BatchFrame BatchReader::read(const PlannedFrame& frame) {
   InputOptions input;
   input.config = config_;
   input.scale_calibration = value_at(frame, "scale_calibration", false);
+  input.binning = value_at(frame, "binning", 1);
   return {load_frame(files, input, exec_), {}};
 }
 

@@ -23,6 +23,7 @@ struct BatchInputs {
   std::string frames;  // of each input: "10:60:2"
   bool rectify = false;
   bool scale_calibration = false;
+  int binning = 1;
   bool tracks = false;  // each input is a sequence, tracked from its first frame
 };
 
@@ -52,6 +53,7 @@ struct BatchSequence {
   std::string layout;
   bool rectify = false;
   bool scale_calibration = false;
+  int binning = 1;
   std::size_t step = 1;   // between planned frames
   std::size_t first = 0;  // with tracks: the first frame
 

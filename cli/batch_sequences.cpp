@@ -25,6 +25,7 @@ std::unique_ptr<input::Sequence> open(const BatchSequence& sequence, const input
   options.layout = sequence.layout;
   options.rectify = sequence.rectify;
   options.scale_calibration = sequence.scale_calibration;
+  options.binning = sequence.binning;
   options.frames = range;
   return input::open_sequence(sequence.source, options, pool);
 }

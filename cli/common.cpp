@@ -9,6 +9,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/core/target.hpp>
 #include <cairn/device/device.hpp>
+#include <cairn/image/binning.hpp>
 #include <cairn/input/frame_list.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/config_files.hpp>
@@ -144,6 +145,16 @@ void add_map_options(CLI::App& app, io::MapOptions& maps) {
   app.add_option("--depth-units", maps.depth_units_per_m,
                  "units per metre of 16-bit depth images; default: 1000 (mm), in folders of TUM RGB-D 5000")
       ->type_name("N");
+}
+
+void add_binning_option(CLI::App& app, int& binning) {
+  app.add_option(
+         "--binning", binning,
+         "N x N pixels in one, from 2 for images wider than about 500 px: a fraction of the time; results are in "
+         "pixels of the smaller images, 1 to " +
+             std::to_string(kMaxBinning))
+      ->type_name("N")
+      ->capture_default_str();
 }
 
 void add_layout_option(CLI::App& app, std::string& layout) {
@@ -296,6 +307,22 @@ io::LoadedPair load_images(const io::FrameFiles& files, const Pool& pool) {
   return io::load_pair(files, pool);
 }
 
+namespace {
+
+void bin(LoadedFrame& frame, io::Calibration& calibration, int factor, const Pool& pool) {
+  calibration.rig = frame.rig;
+  calibration = io::binned(calibration, frame.left.gray.size(), factor);
+  frame.rig = calibration.rig;
+  frame.left = io::binned(frame.left, factor, pool);
+  if (!frame.right.empty()) frame.right = binned(frame.right, factor, pool);
+  if (frame.given) {
+    const Image<float> given = binned_disparity(frame.given->disparity_px, factor, pool);
+    frame.given = external_disparity(given, {});
+  }
+}
+
+}  // namespace
+
 LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options, const Exec& exec) {
   LoadedFrame frame;
   if (files.given) {
@@ -341,6 +368,7 @@ LoadedFrame load_frame(const io::FrameFiles& files, const InputOptions& options,
         ": describes raw cameras and their distortion; images are not rectified here and must be "
         "(cairn rectify does, and writes their calib.txt)\n";
   }
+  if (options.binning != 1) bin(frame, calibration, options.binning, exec.pool);
   ResolvedConfig resolved = resolve(options.config, calibration.num_disparities);
   frame.config = std::move(resolved.config);
   frame.config.ground.known = std::move(calibration.ground);

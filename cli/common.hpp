@@ -66,6 +66,7 @@ struct InputOptions {
   std::string right;  // empty with a folder, or with a given disparity
   std::string calib;
   bool scale_calibration = false;
+  int binning = 1;          // of all images, after everything else that is read
   std::string layout;       // of files with both images; empty: each has one
   bool takes_maps = false;  // or depth.png and the like instead of a right image
   io::MapOptions maps;
@@ -76,6 +77,8 @@ struct InputOptions {
 void add_layout_option(CLI::App& app, std::string& layout);
 /// LEFT, RIGHT, --calib, --layout and those of add_config_options().
 void add_input_options(CLI::App& app, InputOptions& options);
+/// --binning.
+void add_binning_option(CLI::App& app, int& binning);
 /// --disparity, --depth-image and --depth-units.
 void add_map_options(CLI::App& app, io::MapOptions& maps);
 

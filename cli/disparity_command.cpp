@@ -133,6 +133,7 @@ int estimate(const DisparityOptions& options) {
 Work declare_disparity(CLI::App& app) {
   auto options = std::make_shared<DisparityOptions>();
   add_input_options(app, options->input);
+  add_binning_option(app, options->input.binning);
   add_exec_options(app, options->exec);
   add_device_option(app, options->exec);
   app.add_option("-o,--output", options->output,

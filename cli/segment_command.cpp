@@ -424,6 +424,7 @@ int segment_by_presets(const SegmentOptions& options) {
 Work declare_segment(CLI::App& app) {
   auto options = std::make_shared<SegmentOptions>();
   add_input_options(app, options->input);
+  add_binning_option(app, options->input.binning);
   app.get_option("--preset")
       ->description(
           "preset to start from: default or paper; or a list, e.g. paper,default, each with its "

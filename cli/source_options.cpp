@@ -51,6 +51,7 @@ void add_source_options(CLI::App& app, SourceInput& input) {
                "rectification of raw images by the --calib of the raw cameras (EuRoC: always)");
   app.add_flag("--scale-calibration", input.options.scale_calibration,
                "scaling of a calibration for images of another size of the same shape");
+  add_binning_option(app, input.options.binning);
   app.add_option("--layout", input.options.layout,
                  "layout of a video, a camera or images with both images: side_by_side or top_bottom")
       ->type_name("NAME");

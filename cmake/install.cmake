@@ -29,7 +29,7 @@ set(private_headers
   sequence/assign sequence/changes sequence/kalman sequence/landmark_geometry sequence/motion_fit sequence/twist
   io/calibration_forms io/frame_names io/load_module io/raster io/read_file io/sha256 io/yaml_text
   device/careful_device device/engine device/module
-  input/frame_list input/frame_watch input/mcap_sequence input/mcap_topics input/ros_depth input/stamped_images io/names_and_numbers
+  input/binned_sequence input/frame_list input/frame_watch input/mcap_sequence input/mcap_topics input/ros_depth input/sequence_over input/stamped_images io/names_and_numbers
   input/open_parts input/sequence_scores_json sequence/stamp_pairing io/text_lines
   live/topics output/drawing output/json output/json_line web/html_template web/live_page web/page_parts ros/mcap_format
   view/access view/channels view/client view/frame_json view/parameters

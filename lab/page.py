@@ -83,6 +83,13 @@ def growth(cairn, title, file, axis, extents, x_of):
 """
 
 
+ARM64 = """## 64-bit ARM
+
+Instructions of the second frame of the generated pair, 320x240 with 64 disparities, one thread, preset `default`, as QEMU counts them (`./dev bench arm64`). They say how much work a stage is with vectors of 16 bytes; how fast a board does it, they do not. Stages of fewer than a million are left out.
+
+"""
+
+
 def main():
     if len(sys.argv) not in (4, 5):
         sys.exit(__doc__)
@@ -100,6 +107,7 @@ def main():
     if len(sys.argv) == 5:
         engines = ("The output of `./dev bench engines`: ours and theirs interleaved in one process, on real images, one thread each unless "
                    "stated otherwise; the ratio is theirs to ours, of the minimum times.\n\n" + pathlib.Path(sys.argv[4]).read_text())
+    arm64 = root / "lab" / "arm64_counts.md"
     write(root / "BENCHMARK.md", f"""# Benchmark
 
 <!-- Written by ./dev bench; do not edit. -->
@@ -117,7 +125,8 @@ Median processor time on one thread, and the straight line (constant ms + ms per
 
 {pixels}{disparities}## Comparison with OpenCV
 
-{engines}""")
+{engines}
+{ARM64}{arm64.read_text()}""")
     print(f"wrote BENCHMARK.md and its plots in {time.monotonic() - start:.0f} s")
 
 

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/input/sequence.hpp>
 
+#include <cairn/input/binned_sequence.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
@@ -215,6 +217,55 @@ void refuse_other_recording(const std::string& source) {
   }
 }
 
+/// Regardless of binning.
+std::unique_ptr<Sequence> open_whole(const std::string& source, const SourceOptions& options,
+                                     const Pool& pool) {
+  if (source.empty()) throw Error("SOURCE: found an empty name, expected a folder or a video");
+  if (options.maps.any() && (is_camera(source) || !io::is_folder(source) || recording_of(source)))
+    refuse_maps(options.maps, source);
+  if (exists(source) && !is_camera(source)) {
+    if (const auto recording = recording_of(source)) {
+      check_no_layout(options, source);
+      return open_mcap(*recording, options, pool);
+    }
+  }
+  if (source.starts_with("ros2:") && !exists(source)) {
+    check_no_layout(options, source);
+    return open_ros2(source, options, pool);
+  }
+  check_no_topics(options, source);
+  if (is_camera(source)) return open_camera(source, options, pool);
+  for (const char* web : {"http://", "https://"}) {
+    if (source.starts_with(web)) {
+      throw Error(source + ": expected gst:'souphttpsrc location=" + source +
+                  " is-live=true ! decodebin' for an HTTP camera");
+    }
+  }
+  if (!exists(source)) {
+    if (const std::size_t comma = source.find(','); comma != std::string::npos)
+      return open_pair(source.substr(0, comma), source.substr(comma + 1), options, pool);
+    if (is_pattern(source))
+      throw Error(source + ": is one pattern, expected two: left_%04d.png,right_%04d.png");
+    throw Error(
+        source +
+        ": not found, expected a folder of frames, a recording (.mcap), a video, LEFT,RIGHT, or a camera or topics "
+        "(v4l2:, gst:, rtsp://, ros2:)");
+  }
+  if (!io::is_folder(source)) {
+    refuse_other_recording(source);
+    if (fs::is_character_file(source))
+      throw Error(source + ": is a device, expected v4l2:" + source + " for a camera");
+    if (options.layout.empty()) {
+      throw Error(source +
+                  ": is one file, expected --layout side_by_side or top_bottom for a video with both images, "
+                  "or LEFT,RIGHT");
+    }
+    return open_video(source, options, pool);
+  }
+  const fs::path folder = (fs::path(source) / "").parent_path();  // without a trailing slash
+  return std::make_unique<FileSequence>(name_of(folder), list_folder(folder, options), options, pool);
+}
+
 }  // namespace
 
 StereoPair pair_of(const SequenceFrame& frame) {
@@ -275,50 +326,8 @@ FrameRange parse_frame_range(std::string_view text) {
 std::unique_ptr<Sequence> open_sequence(const std::string& source, const SourceOptions& options,
                                         const Pool& pool) {
   check(options);
-  if (source.empty()) throw Error("SOURCE: found an empty name, expected a folder or a video");
-  if (options.maps.any() && (is_camera(source) || !io::is_folder(source) || recording_of(source)))
-    refuse_maps(options.maps, source);
-  if (exists(source) && !is_camera(source)) {
-    if (const auto recording = recording_of(source)) {
-      check_no_layout(options, source);
-      return open_mcap(*recording, options, pool);
-    }
-  }
-  if (source.starts_with("ros2:") && !exists(source)) {
-    check_no_layout(options, source);
-    return open_ros2(source, options, pool);
-  }
-  check_no_topics(options, source);
-  if (is_camera(source)) return open_camera(source, options, pool);
-  for (const char* web : {"http://", "https://"}) {
-    if (source.starts_with(web)) {
-      throw Error(source + ": expected gst:'souphttpsrc location=" + source +
-                  " is-live=true ! decodebin' for an HTTP camera");
-    }
-  }
-  if (!exists(source)) {
-    if (const std::size_t comma = source.find(','); comma != std::string::npos)
-      return open_pair(source.substr(0, comma), source.substr(comma + 1), options, pool);
-    if (is_pattern(source))
-      throw Error(source + ": is one pattern, expected two: left_%04d.png,right_%04d.png");
-    throw Error(
-        source +
-        ": not found, expected a folder of frames, a recording (.mcap), a video, LEFT,RIGHT, or a camera or topics "
-        "(v4l2:, gst:, rtsp://, ros2:)");
-  }
-  if (!io::is_folder(source)) {
-    refuse_other_recording(source);
-    if (fs::is_character_file(source))
-      throw Error(source + ": is a device, expected v4l2:" + source + " for a camera");
-    if (options.layout.empty()) {
-      throw Error(source +
-                  ": is one file, expected --layout side_by_side or top_bottom for a video with both images, "
-                  "or LEFT,RIGHT");
-    }
-    return open_video(source, options, pool);
-  }
-  const fs::path folder = (fs::path(source) / "").parent_path();  // without a trailing slash
-  return std::make_unique<FileSequence>(name_of(folder), list_folder(folder, options), options, pool);
+  std::unique_ptr<Sequence> sequence = open_whole(source, options, pool);
+  return options.binning == 1 ? std::move(sequence) : binned(std::move(sequence), options.binning, pool);
 }
 
 }  // namespace cairn::input

@@ -87,6 +87,7 @@ struct SourceOptions {
   bool rectify = false;            // the images are raw and are rectified by the calibration; always for
                                    // EuRoC
   bool scale_calibration = false;  // where it is for images of another size of the same shape
+  int binning = 1;                 // so many rows and columns of pixels in one: cairn/image/binning.hpp
   bool has_search_range = false;   // match.num_disparities is set: ndisp of the calibration is not read
   double open_timeout_s = 10;      // for cameras: until the first pair
 };

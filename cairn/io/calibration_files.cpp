@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
+#include <cairn/image/binning.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/calibration_forms.hpp>
@@ -604,6 +605,22 @@ Calibration scaled(const Calibration& calibration, Size image) {
       *at = static_cast<float>((double{*at} + 0.5) * down - 0.5);
   }
   return result;
+}
+
+Calibration binned(const Calibration& calibration, Size image, int factor) {
+  if (factor < 1 || factor > kMaxBinning) {
+    throw Error("--binning: found " + std::to_string(factor) + ", expected 1 to " +
+                std::to_string(kMaxBinning));
+  }
+  const Size small{image.width / factor, image.height / factor};
+  if (small.area() == 0) {
+    throw Error("--binning " + std::to_string(factor) + ": found images of " + text(image) +
+                ", expected larger ones");
+  }
+  Calibration whole = calibration;
+  whole.image_size =
+      Size{small.width * factor, small.height * factor};  // what remains at the border is left out
+  return scaled(whole, small);
 }
 
 Calibration suited(const Calibration& calibration, Size image, const fs::path& path, bool scales) try {

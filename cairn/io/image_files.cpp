@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cairn/core/error.hpp>
+#include <cairn/image/binning.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/image_files.hpp>
 #include <cairn/io/raster.hpp>
@@ -167,6 +168,11 @@ LoadedPair pair_of(const Raster& left, const Raster& right, const Pool& pool, in
   int depth = std::max(depth_of(left), depth_of(right));
   if (left.bytes_each > 1) depth = std::max(depth, least_bits);
   return {picture_of(left, depth, pool), picture_of(right, depth, pool), depth};
+}
+
+LoadedImage binned(const LoadedImage& image, int factor, const Pool& pool) {
+  return {cairn::binned(image.gray, factor, pool),
+          image.rgb.empty() ? Image<Rgb>() : cairn::binned(image.rgb, factor, pool)};
 }
 
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool) {

@@ -60,6 +60,9 @@ LoadedPair load_pair(const std::filesystem::path& left, const std::filesystem::p
 /// The grey of colours, (77 R + 150 G + 29 B + 128) >> 8.
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool = {});
 
+/// Grey and colours with factor × factor pixels in one: cairn::binned().
+LoadedImage binned(const LoadedImage& image, int factor, const Pool& pool = {});
+
 /// Integers per pixel as stored in the file: ids, masks.
 struct Labels {
   Image<std::uint16_t> ids;

@@ -3,6 +3,7 @@
 #include <cairn/live/looped.hpp>
 
 #include <cairn/core/error.hpp>
+#include <cairn/input/sequence_over.hpp>
 #include <utility>
 
 namespace cairn::live {
@@ -11,10 +12,10 @@ namespace {
 using input::Sequence;
 using input::SequenceFrame;
 
-class LoopedSequence : public Sequence {
+class LoopedSequence : public input::SequenceOver {
  public:
   explicit LoopedSequence(std::function<std::unique_ptr<Sequence>()> open)
-      : open_(std::move(open)), inner_(open_()), rig_(inner_->rig()), size_(inner_->image_size()) {
+      : SequenceOver(open()), open_(std::move(open)), rig_(inner_->rig()), size_(inner_->image_size()) {
     if (inner_->status().is_live)
       throw Error(inner_->name() + ": is a camera, expected a source with an end to repeat");
   }
@@ -39,22 +40,13 @@ class LoopedSequence : public Sequence {
   }
 
   [[nodiscard]] std::optional<std::size_t> size() const override { return std::nullopt; }
-  [[nodiscard]] std::string name() const override { return inner_->name(); }
   [[nodiscard]] Size image_size() const override { return size_; }
   [[nodiscard]] const std::optional<StereoRig>& rig() const override { return rig_; }
-  [[nodiscard]] std::optional<int> disparities() const override { return inner_->disparities(); }
-  [[nodiscard]] const KnownGround& ground() const override { return inner_->ground(); }
-  [[nodiscard]] const io::Rectifier* rectifier() const override { return inner_->rectifier(); }
-  [[nodiscard]] std::string frame_id() const override { return inner_->frame_id(); }
-  [[nodiscard]] std::string stamps_from() const override { return inner_->stamps_from(); }
-  [[nodiscard]] const std::vector<input::SourceRemark>& remarks() const override { return inner_->remarks(); }
-  [[nodiscard]] const std::string& ended_early() const override { return inner_->ended_early(); }
 
  private:
   static constexpr std::int64_t kPause_ns = 2'000'000'000;  // between rounds; more than a gap in the stamps
 
   std::function<std::unique_ptr<Sequence>()> open_;
-  std::unique_ptr<Sequence> inner_;
   // Cached from the first round, as other threads may ask while the next one opens.
   std::optional<StereoRig> rig_;
   Size size_;

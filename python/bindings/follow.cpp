@@ -24,9 +24,10 @@ struct SourceArguments {
   std::string disparity;
   std::string depth_image;
   std::optional<double> depth_units;
+  int binning = 1;
 };
 CAIRN_TUPLE(SourceArguments, calib, layout, rate_hz, frames, rectify, topics, disparity, depth_image,
-            depth_units)
+            depth_units, binning)
 CAIRN_TUPLE(live::SensorFiles, odometry, imu, poses, scan, map, is_map_read_only, start)
 
 CAIRN_NAMES(MotionRefusal, kMotionRefusals)
@@ -280,6 +281,7 @@ std::unique_ptr<SequenceIterator> follow(const FollowSettings& settings, const E
   options.rate_hz = how.rate_hz;
   options.rectify = how.rectify;
   options.topics = how.topics;
+  options.binning = how.binning;
   options.maps = {how.disparity, how.depth_image, how.depth_units};
   if (!how.frames.empty()) options.frames = input::parse_frame_range(how.frames);
   return std::make_unique<SequenceIterator>(source, options, files, settings, exec);

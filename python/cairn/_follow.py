@@ -247,15 +247,15 @@ class Following:
 
 
 def follow(source: PathLike, *, calib: Optional[PathLike] = None, layout: str = "", rate_hz: float = 0.0, frames: str = "",
-           rectify: bool = False, topics: str = "", disparity: PathLike = "", depth_image: PathLike = "",
+           rectify: bool = False, binning: int = 1, topics: str = "", disparity: PathLike = "", depth_image: PathLike = "",
            depth_units: Optional[float] = None, odometry_file: Optional[PathLike] = None, imu_file: Optional[PathLike] = None,
            poses_file: Optional[PathLike] = None, map_file: Optional[PathLike] = None, read_only: bool = False,
            preset: str = "default", config: Union[Config, PathLike, None] = None, exec: Optional[Exec] = None,
            **options) -> Following:
     """Tracks camera and objects through a whole sequence. Returns a Following, an iterator of Steps.
     source: a folder of frames, a folder of KITTI or EuRoC, 'LEFT,RIGHT', or a video with layout (docs/sequences.md). calib:
-    replaces the calibration of the source. frames: 'A:B:STEP'. rectify: True for raw images. topics, disparity,
-    depth_image, depth_units: depth from elsewhere (docs/bring_your_own_depth.md). odometry_file, imu_file,
+    replaces the calibration of the source. frames: 'A:B:STEP'. rectify: True for raw images. binning: N x N
+    pixels in one. topics, disparity, depth_image, depth_units: depth from elsewhere (docs/bring_your_own_depth.md). odometry_file, imu_file,
     poses_file: motion measured by other sensors. map_file: landmarks to recognise and to extend; read_only: leaves it
     unchanged. The arguments are the options of `cairn follow` and give the same steps.
     preset, config (a Config or a file name) and options are those of segment(), plus the groups of
@@ -268,7 +268,7 @@ def follow(source: PathLike, *, calib: Optional[PathLike] = None, layout: str = 
     following._exec = exec
     following._sequence = _cairn.follow(settings(config, preset, options), exec, source,
                                         (calib or "", layout, rate_hz, frames, rectify, topics, disparity, depth_image,
-                                         depth_units),
+                                         depth_units, binning),
                                         (odometry_file, imu_file, poses_file, None, map_file, read_only, None))
     return following
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <cairn/image/binning.hpp>
 #include <cairn/io/disparity_files.hpp>
 #include <nlohmann/json.hpp>
 
@@ -185,6 +186,33 @@ TEST_F(Command, SegmentReadsAFrameAndAFolderOfFrames) {
   EXPECT_FALSE(fs::exists(at("all/objects.json")));
   EXPECT_LT(outcome.out.find("a:"), outcome.out.find("b:"));
   EXPECT_EQ(outcome.err.find("cairn: note: no floor: "), 0U);  // no progress bar, as stderr is no terminal
+}
+
+TEST_F(Command, SegmentBinsImagesAsIfTheyWereOfThatSize) {
+  const std::string sample = std::string(CAIRN_SOURCE_DIR) + "/data/samples/overlap";
+  const io::LoadedPair pair = io::load_pair(sample + "/left.png", sample + "/right.png");
+  fs::create_directories(at("whole"));
+  fs::create_directories(at("half"));
+  io::save_png(at("whole/left.png"), pair.left.gray.view());
+  io::save_png(at("whole/right.png"), pair.right.gray.view());
+  const Image<Gray> left = binned(pair.left.gray, 2);
+  const Image<Gray> right = binned(pair.right.gray, 2);
+  io::save_png(at("half/left.png"), left.view());
+  io::save_png(at("half/right.png"), right.view());
+  const std::string calib = sample + "/calib.txt";
+  const Outcome one = run({"segment", path("whole"), "--calib", calib, "--binning", "2", "-o", path("one")});
+  const Outcome other =
+      run({"segment", path("half"), "--calib", calib, "--scale-calibration", "-o", path("other")});
+  ASSERT_EQ(one.code, 0) << one.err;
+  ASSERT_EQ(other.code, 0) << other.err;
+  for (const char* file : {"objects.png", "disparity.png", "space.png", "overlay.png"})
+    EXPECT_EQ(content(at(std::string("one/") + file)), content(at(std::string("other/") + file))) << file;
+  const Json objects = Json::parse(content(at("one/objects.json")));
+  EXPECT_EQ(objects.at("objects"), Json::parse(content(at("other/objects.json"))).at("objects"));
+  EXPECT_GT(objects.at("objects").size(), 0U);
+  const Outcome refused = run({"segment", path("whole"), "--binning", "9"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("--binning: found 9, expected 1 to 8"), std::string::npos) << refused.err;
 }
 
 TEST_F(Command, SegmentComparesPresets) {

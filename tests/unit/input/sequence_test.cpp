@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cairn/core/image.hpp>
+#include <cairn/image/binning.hpp>
 #include <cairn/input/sequence.hpp>
 #include <cairn/io/calibration_files.hpp>
 #include <cairn/io/image_files.hpp>
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <filesystem>
 #include <support/collection.hpp>
+#include <support/grids.hpp>
 #include <support/temporary_folder.hpp>
 
 namespace cairn::input {
@@ -315,6 +317,37 @@ TEST(SequenceOfFolders, RefusesMissingAndInvalidStamps) {
   EXPECT_TRUE(has(refusal([&] { (void)open(folder); }), {"stamps.txt", "has 2 stamps", "3 frames"}));
   (void)folder.with("stamps.txt", "0\nsoon\n200000000\n");
   EXPECT_TRUE(has(refusal([&] { (void)open(folder); }), {"stamps.txt:2", "'soon'"}));
+}
+
+TEST(SequenceOfFolders, BinsItsFramesAndTheirCalibration) {
+  const TemporaryFolder folder;
+  save_frames(folder, 2);
+  SourceOptions options;
+  const std::vector<SequenceFrame> whole = all_of(*open(folder, options));
+  options.binning = 3;
+  const std::unique_ptr<Sequence> sequence = open(folder, options);
+  EXPECT_EQ(sequence->image_size(), (Size{8, 5}));
+  EXPECT_FLOAT_EQ(sequence->rig()->focal_px, 20.0F / 3);
+  EXPECT_FLOAT_EQ(sequence->rig()->cx_px, 12.5F / 3 - 0.5F);
+  EXPECT_FLOAT_EQ(sequence->rig()->cy_px, 8.5F / 3 - 0.5F);
+  EXPECT_FLOAT_EQ(sequence->rig()->baseline_m, 0.1F);
+  EXPECT_EQ(sequence->disparities(), 6);
+  const std::vector<SequenceFrame> frames = all_of(*sequence);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(stamps_of(frames), stamps_of(whole));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].name, whole[i].name);
+    const Image<Gray> left = cairn::binned(whole[i].left.gray, 3);
+    const Image<Gray> right = cairn::binned(whole[i].right, 3);
+    EXPECT_EQ(grids::numbers(frames[i].left.gray), grids::numbers(left));
+    EXPECT_EQ(grids::numbers(frames[i].right), grids::numbers(right));
+  }
+  for (const int factor : {0, -1, 9}) {
+    options.binning = factor;
+    EXPECT_NE(
+        refusal([&] { (void)open(folder, options); }).find("--binning: found " + std::to_string(factor)),
+        std::string::npos);
+  }
 }
 
 TEST(SequenceOfFolders, RefusesAChangeOfSize) {
