@@ -249,7 +249,7 @@ Work declare_batch(CLI::App& app) {
   app.add_flag("--rectify", options->inputs.rectify, "plan: rectification of raw images by --calib");
   app.add_flag("--scale-calibration", options->inputs.scale_calibration,
                "plan: scaling of a calibration for images of another size of the same shape");
-  add_binning_option(app, options->inputs.binning);
+  add_binning_option(app, options->inputs.binning, "plan: ");
   app.add_option("--layout", options->inputs.layout,
                  "plan: layout of videos and images: side_by_side or top_bottom")
       ->type_name("NAME");

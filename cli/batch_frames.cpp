@@ -210,6 +210,7 @@ std::size_t index_of(const PlannedFrame& frame) {
 }
 
 PlannedFrames planned_frames(const BatchInputs& inputs, const Pool& pool) {
+  io::check_binning(inputs.binning);
   if (!inputs.calib.empty() && !inputs.rectify) (void)io::load_calibration(inputs.calib);
   Planner planner(inputs, pool);
   for (const std::string& input : inputs.paths) planner.add(input);

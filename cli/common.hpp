@@ -78,7 +78,7 @@ void add_layout_option(CLI::App& app, std::string& layout);
 /// LEFT, RIGHT, --calib, --layout and those of add_config_options().
 void add_input_options(CLI::App& app, InputOptions& options);
 /// --binning.
-void add_binning_option(CLI::App& app, int& binning);
+void add_binning_option(CLI::App& app, int& binning, const std::string& prefix = {});
 /// --disparity, --depth-image and --depth-units.
 void add_map_options(CLI::App& app, io::MapOptions& maps);
 
@@ -94,6 +94,9 @@ std::vector<std::optional<std::int64_t>> stamps_of(const InputOptions& options,
 const std::filesystem::path& right_of(const io::FrameFiles& files);
 /// The images of a frame. Throws Error like right_of().
 io::LoadedPair load_images(const io::FrameFiles& files, const Pool& pool = {});
+
+/// The right image alone, binned, to compare given disparities with. Precondition: the frame has one.
+Image<Gray> right_grey(const io::FrameFiles& files, int binning, const Pool& pool);
 
 /// A frame with everything needed to process it.
 struct LoadedFrame {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cairn/core/error.hpp>
+#include <cairn/diagnosis/given_disparity.hpp>
 #include <iostream>
 #include <string_view>
 
@@ -50,6 +51,20 @@ std::string changes_text(const std::string& frame, const std::vector<FindingChan
                     : line_of(finding, where);
   }
   return text;
+}
+
+std::optional<Finding> GivenCheck::check(View<const float> given_px, View<const Gray> left,
+                                         const std::function<Image<Gray>()>& right,
+                                         const std::optional<StereoRig>& rig, const std::string& name,
+                                         const Exec& exec) {
+  const int index = frames_++;
+  if (!was_refused_ && index >= RigWatch::kFrames && index % RigWatch::kEvery != 0) return std::nullopt;
+  const Image<Gray> other = right();
+  auto found = check_given_disparity(given_px, StereoPair::from(left, other), rig, exec);
+  was_refused_ = found && found->severity == Severity::broken;
+  if (!was_refused_) return found;
+  const FindingInfo& known = info(found->kind);
+  throw Error(name + ": " + std::string(known.name) + ": " + found->says + ". " + std::string(known.remedy));
 }
 
 void PassingFindings::add(const std::string& frame, std::vector<Finding> findings) {

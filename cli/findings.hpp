@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cairn/diagnosis/rig_watch.hpp>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,21 @@ std::string frames_text(const Finding& finding, const std::vector<std::string>& 
 
 /// A line for stderr per change of the findings of a run, with its remedy. `frame`: the name of the frame.
 std::string changes_text(const std::string& frame, const std::vector<FindingChange>& changes);
+
+/// Compares given disparities with the pairs: of the first frames and of every hundredth, and of all after a map that
+/// was refused.
+class GivenCheck {
+ public:
+  /// `right`: loads the right image, of the left one's size; called for the compared frames only. Throws Error, beginning with
+  /// `name`, if the map is certainly none of these images; a finding if it is suspect.
+  std::optional<Finding> check(View<const float> given_px, View<const Gray> left,
+                               const std::function<Image<Gray>()>& right, const std::optional<StereoRig>& rig,
+                               const std::string& name, const Exec& exec);
+
+ private:
+  int frames_ = 0;
+  bool was_refused_ = false;
+};
 
 /// The findings of a folder run, reported once for all frames with them.
 class PassingFindings {

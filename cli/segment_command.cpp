@@ -176,32 +176,6 @@ void remove_older_page(const fs::path& folder) {
   fs::remove(folder / kPageName, ignored);
 }
 
-/// Compares given disparities with the pairs: of the first frames and of every hundredth, and of all after a map that
-/// was refused.
-class GivenCheck {
- public:
-  /// Throws Error if the map is certainly none of these images; a finding if it is suspect.
-  std::optional<Finding> check(const LoadedFrame& loaded, const io::FrameFiles& files, const Exec& exec) {
-    if (!loaded.given || !files.right) return std::nullopt;
-    const int index = frames_++;
-    if (!was_refused_ && index >= RigWatch::kFrames && index % RigWatch::kEvery != 0) return std::nullopt;
-    was_refused_ = false;
-    const io::LoadedImage right = files.layout == io::Layout::one ? io::load_picture(*files.right, exec.pool)
-                                                                  : io::load_pair(files, exec.pool).right;
-    auto found = check_given_disparity(loaded.given->disparity_px,
-                                       StereoPair::from(loaded.left.gray, right.gray), loaded.rig, exec);
-    was_refused_ = found && found->severity == Severity::broken;
-    if (!was_refused_) return found;
-    const FindingInfo& known = info(found->kind);
-    throw Error(loaded.given_name + ": " + std::string(known.name) + ": " + found->says + ". " +
-                std::string(known.remedy));
-  }
-
- private:
-  int frames_ = 0;
-  bool was_refused_ = false;
-};
-
 LoadedFrame load(const io::FrameFiles& files, const SegmentOptions& options, const Exec& exec) {
   LoadedFrame loaded = load_frame(files, options.input, exec);
   for (const auto& [requested, name] : metric_outputs(options)) {
@@ -331,7 +305,12 @@ Outcome segment_all(const SegmentOptions& options) {
     std::optional<Finding> of_given;
     try {
       loaded = load(frames[i], options, exec);
-      of_given = given.check(*loaded, frames[i], exec);
+      if (loaded->given && frames[i].right) {
+        of_given = given.check(
+            loaded->given->disparity_px, loaded->left.gray,
+            [&] { return right_grey(frames[i], options.input.binning, exec.pool); }, loaded->rig,
+            loaded->given_name, exec);
+      }
     } catch (const Error& error) {
       if (frames.size() == 1) throw;
       progress.clear();

@@ -271,8 +271,8 @@ void record_plane(std::ofstream& file, int job, const JudgedPlane& judged, View<
     right += std::abs(disparity_on(judged.plane, pixel) - truth) <= 1 ? 1 : 0;
   }
   if (known > 0)
-    record(file, job, static_cast<float>(right) / static_cast<float>(known), static_cast<float>(known),
-           judged.features);
+    record(file, job, static_cast<float>(right) / static_cast<float>(known),
+           static_cast<float>(known * judged.pixels_per_sample / 2), judged.features);
 }
 
 /// A part of a frame and of its truth.

@@ -68,12 +68,9 @@ Image<float> binned_disparity(View<const float> disparity_px, int factor, const 
           if (!std::isnan(d)) known.push_back(d);
         }
       }
-      const auto middle =
-          known.begin() + static_cast<std::ptrdiff_t>((known.size() - (known.empty() ? 0 : 1)) / 2);
-      if (2 * known.size() < slot(factor * factor)) {
-        result(x, y) = std::numeric_limits<float>::quiet_NaN();
-        continue;
-      }
+      result(x, y) = std::numeric_limits<float>::quiet_NaN();
+      if (known.empty()) continue;
+      const auto middle = known.begin() + static_cast<std::ptrdiff_t>((known.size() - 1) / 2);
       std::nth_element(known.begin(), middle, known.end());
       result(x, y) = *middle / static_cast<float>(factor);
     }

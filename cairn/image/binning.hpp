@@ -14,7 +14,7 @@ inline constexpr int kMaxBinning = 8;
 Image<Gray> binned(View<const Gray> image, int factor, const Pool& pool = {});
 Image<Rgb> binned(View<const Rgb> image, int factor, const Pool& pool = {});
 /// Disparities of the smaller image, px: of each bin the median of those that are known (of two, the smaller), divided by
-/// `factor`, so none lies between two surfaces. NaN where fewer than half are known.
+/// `factor`, so none lies between two surfaces. NaN where none is known.
 Image<float> binned_disparity(View<const float> disparity_px, int factor, const Pool& pool = {});
 
 }  // namespace cairn

@@ -43,7 +43,7 @@ void SourceCalibration::suit(Size image) {
   } else if (!path.empty()) {
     says = io::suited(says, image, path, scales);
     if (has_search_range) says.num_disparities.reset();
-    io::check_search_range(says, path);
+    io::check_search_range(io::binned(says, image, binning), path);
   }
 }
 
@@ -63,6 +63,7 @@ SourceCalibration open_calibration(const SourceOptions& options, const std::opti
                                    bool grey_cameras, bool is_raw, const std::function<Size()>& image_size) {
   SourceCalibration calibration;
   calibration.scales = options.scale_calibration;
+  calibration.binning = options.binning;
   calibration.has_search_range = options.has_search_range;
   if (!options.calib.empty()) {
     calibration.path = options.calib;

@@ -24,8 +24,9 @@ struct SourceCalibration {
   std::filesystem::path path;  // empty if there is none
   io::Calibration says;
   std::shared_ptr<const io::Rectifier> rectifier;  // for raw images
-  bool scales = false;                             // to the size of the images
-  bool has_search_range = false;                   // without the file
+  int binning = 1;
+  bool scales = false;            // to the size of the images
+  bool has_search_range = false;  // without the file
 
   /// The rectified pair for raw images, else the pair itself. Throws Error if the calibration was made for
   /// another size.

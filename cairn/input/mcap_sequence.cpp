@@ -138,6 +138,7 @@ class McapSequence : public SourceSequence {
 
   void calibrate(const StereoTopics& topics) {
     calibration_.scales = options_.scale_calibration;
+    calibration_.binning = options_.binning;
     calibration_.has_search_range = options_.has_search_range;
     const auto recorded = ros::attachment_of(reader_, "calib.txt");
     if (!options_.calib.empty() || (options_.rectify && recorded)) {

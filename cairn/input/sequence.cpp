@@ -162,6 +162,7 @@ void check(const SourceOptions& options) {
   if (!(options.open_timeout_s > 0 && options.open_timeout_s <= 1e6))
     refuse("--open-timeout", options.open_timeout_s, "s, above 0 ... 1e6");
   (void)io::layout_of(options.layout);
+  io::check_binning(options.binning);
 }
 
 void check_no_topics(const SourceOptions& options, const std::string& source) {

@@ -607,11 +607,15 @@ Calibration scaled(const Calibration& calibration, Size image) {
   return result;
 }
 
-Calibration binned(const Calibration& calibration, Size image, int factor) {
+void check_binning(int factor) {
   if (factor < 1 || factor > kMaxBinning) {
     throw Error("--binning: found " + std::to_string(factor) + ", expected 1 to " +
                 std::to_string(kMaxBinning));
   }
+}
+
+Calibration binned(const Calibration& calibration, Size image, int factor) {
+  check_binning(factor);
   const Size small{image.width / factor, image.height / factor};
   if (small.area() == 0) {
     throw Error("--binning " + std::to_string(factor) + ": found images of " + text(image) +

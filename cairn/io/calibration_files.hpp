@@ -71,8 +71,10 @@ int disparities_down_to(double nearest_m, const StereoRig& rig, int width);
 /// without a size in the file, or if the sides have ratios more than 1 % apart.
 Calibration scaled(const Calibration& calibration, Size image);
 
-/// The calibration of binned images (cairn/image/binning.hpp) where it is for `image`. Throws Error if `factor` is out of
-/// 1 … kMaxBinning or the image is smaller.
+/// Throws Error, naming --binning, if the factor is out of 1 … kMaxBinning.
+void check_binning(int factor);
+/// The calibration of binned images (cairn/image/binning.hpp) where it is for `image`. Throws Error like check_binning(),
+/// or if the image is smaller than the factor.
 Calibration binned(const Calibration& calibration, Size image, int factor);
 
 /// The calibration for images of this size: scaled() if `scales` and it was made for another one. Throws Error if it

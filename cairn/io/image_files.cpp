@@ -171,8 +171,10 @@ LoadedPair pair_of(const Raster& left, const Raster& right, const Pool& pool, in
 }
 
 LoadedImage binned(const LoadedImage& image, int factor, const Pool& pool) {
-  return {cairn::binned(image.gray, factor, pool),
-          image.rgb.empty() ? Image<Rgb>() : cairn::binned(image.rgb, factor, pool)};
+  if (image.rgb.empty()) return {cairn::binned(image.gray, factor, pool), {}};
+  Image<Rgb> colours = cairn::binned(image.rgb, factor, pool);
+  Image<Gray> grey = grey_of(colours, pool);
+  return {std::move(grey), std::move(colours)};
 }
 
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool) {

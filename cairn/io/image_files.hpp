@@ -60,7 +60,7 @@ LoadedPair load_pair(const std::filesystem::path& left, const std::filesystem::p
 /// The grey of colours, (77 R + 150 G + 29 B + 128) >> 8.
 Image<Gray> grey_of(View<const Rgb> colours, const Pool& pool = {});
 
-/// Grey and colours with factor × factor pixels in one: cairn::binned().
+/// The image with factor × factor pixels in one (cairn::binned()); the grey is that of the binned colours, if there are any.
 LoadedImage binned(const LoadedImage& image, int factor, const Pool& pool = {});
 
 /// Integers per pixel as stored in the file: ids, masks.

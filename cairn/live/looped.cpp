@@ -41,6 +41,9 @@ class LoopedSequence : public input::SequenceOver {
 
   [[nodiscard]] std::optional<std::size_t> size() const override { return std::nullopt; }
   [[nodiscard]] Size image_size() const override { return size_; }
+  // Files have nothing to stop, and other threads may ask while the next round opens.
+  void stop() override {}
+  [[nodiscard]] input::SourceStatus status() const override { return {}; }
   [[nodiscard]] const std::optional<StereoRig>& rig() const override { return rig_; }
 
  private:

@@ -55,7 +55,6 @@ struct PlacedRow {
   const float* refined_confidence;
 };
 
-/// Plain loops that compilers vectorise, as in PointKernels.
 /// What a disparity is and how sure it is; surface: see ObstacleCues.
 struct SeenPixels {
   const float* disparity;
@@ -78,6 +77,7 @@ struct HeightsOut {
   std::int32_t* marks;   // the confidence in kSure; within the margin of the floor, nearer, no hole
 };
 
+/// Plain loops that compilers vectorise, as in PointKernels.
 struct ObstacleKernels {
   /// Of row y.
   void (*in_steps_from_floor)(const float* disparity_px, const float* confidence, int y,

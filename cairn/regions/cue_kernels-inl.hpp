@@ -85,7 +85,7 @@ inline void take_planes(const float* disparity_px, int y, int first, int last, c
                         float least, float most, float* CAIRN_RESTRICT refined_px,
                         std::int32_t* CAIRN_RESTRICT group) {
   const GroundPlane main = planes.main, second = planes.second;
-  const auto [on_main, on_second, nearer, farther, holes] = planes.chosen;
+  const auto [of_main, of_second, of_nearer, of_farther, of_holes] = planes.chosen;
   const auto fy = static_cast<float>(y);
   const float* const matched = disparity_px + first;
   for (int i = 0; i < last - first; ++i) {
@@ -103,10 +103,11 @@ inline void take_planes(const float* disparity_px, int y, int first, int last, c
       value = is_on_main ? at_main : value;
       return is_hole ? hole : value;
     };
-    const float a = of_group(on_main.a, on_second.a, nearer.a, farther.a, holes.a);
-    const float b = of_group(on_main.b, on_second.b, nearer.b, farther.b, holes.b);
-    const float c = of_group(on_main.c, on_second.c, nearer.c, farther.c, holes.c);
-    group[i] = of_group(0, 1, 2, 3, 4);  // as Group has it
+    const float a = of_group(of_main.a, of_second.a, of_nearer.a, of_farther.a, of_holes.a);
+    const float b = of_group(of_main.b, of_second.b, of_nearer.b, of_farther.b, of_holes.b);
+    const float c = of_group(of_main.c, of_second.c, of_nearer.c, of_farther.c, of_holes.c);
+    group[i] = of_group(std::int32_t{on_main}, std::int32_t{on_second}, std::int32_t{nearer},
+                        std::int32_t{farther}, std::int32_t{holes});
     const float on = a * fx + b * fy + c;
     const float kept = std::abs(d - on) <= kOnPlane ? d : on;
     const float refined = on == on ? kept : d;

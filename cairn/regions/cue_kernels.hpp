@@ -43,10 +43,13 @@ struct RunHeights {
   std::int32_t n = 0, sum = 0, squares = 0, behind = 0, on = 0;
 };
 
+/// The groups that the planes of a superpixel divide its pixels into, see refine_disparity().
+enum PixelGroup : std::uint8_t { on_main, on_second, nearer, farther, holes };
+inline constexpr std::size_t kPixelGroups = 5;
 /// Planes of disparity for the pixels of a superpixel; NaN where there is none.
 struct SuperpixelPlanes {
-  GroundPlane main, second;           // that divide them into groups
-  std::array<GroundPlane, 5> chosen;  // of each group
+  GroundPlane main, second;
+  std::array<GroundPlane, kPixelGroups> chosen;  // of each group
 };
 
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every

@@ -33,8 +33,9 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 using kernels::kNearPlane;
 using kernels::kOnPlane;
 
-enum Group : std::uint8_t { on_main, on_second, nearer, farther, holes };
-constexpr std::size_t kGroups = 5;
+using kernels::PixelGroup;
+using enum kernels::PixelGroup;
+constexpr std::size_t kGroups = kernels::kPixelGroups;
 
 using Pixels = std::vector<SuperpixelPixel>;
 
@@ -117,20 +118,30 @@ class PlaneFit {
   double x_ = 0, y_ = 0, d_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, xd_ = 0, yd_ = 0;
 };
 
+/// For kernels; NaN where there is none.
+GroundPlane in_floats(const std::optional<DisparityPlane>& plane) {
+  if (!plane) return {kNan, kNan, kNan};
+  return {static_cast<float>(plane->a), static_cast<float>(plane->b), static_cast<float>(plane->c)};
+}
+
 /// The planes of a superpixel's own disparities.
 struct OwnPlanes {
   std::optional<DisparityPlane> main, second, textured;
   double main_share = 0;  // of its pixels
+  /// As kernels::CueKernels::take_planes has it.
+  [[nodiscard]] PixelGroup group_of(const SuperpixelPixel& p) const {
+    const auto before = [&p](const std::optional<DisparityPlane>& plane) {
+      return p.disparity_px - in_floats(plane).disparity_px(static_cast<float>(p.x), static_cast<float>(p.y));
+    };
+    if (std::isnan(p.disparity_px)) return holes;
+    if (std::abs(before(main)) <= kNearPlane) return on_main;
+    if (std::abs(before(second)) <= kNearPlane) return on_second;
+    return before(main) < 0 ? farther : nearer;
+  }
 };
 
 bool is_near(const DisparityPlane& plane, const SuperpixelPixel& p, float within) {
   return std::abs(double{p.disparity_px} - plane.at(p.x, p.y)) <= double{within};
-}
-
-/// For kernels.
-GroundPlane in_floats(const std::optional<DisparityPlane>& plane) {
-  if (!plane) return {kNan, kNan, kNan};
-  return {static_cast<float>(plane->a), static_cast<float>(plane->b), static_cast<float>(plane->c)};
 }
 
 /// How many disparities there are of each whole number.
@@ -438,15 +449,6 @@ class Refiner {
     candidate.agree_objects = part(on_objects, all);
   }
 
-  [[nodiscard]] static Group group_of(const OwnPlanes& own, const SuperpixelPixel& p) {
-    if (std::isnan(p.disparity_px)) return holes;
-    if (!own.main) return nearer;
-    const double before = double{p.disparity_px} - own.main->at(p.x, p.y);
-    if (std::abs(before) <= kNearPlane) return on_main;
-    if (own.second && is_near(*own.second, p, kNearPlane)) return on_second;
-    return before < 0 ? farther : nearer;
-  }
-
   /// Means over a group.
   struct GroupCues {
     double n = 0, x = 0, y = 0, d = 0, spread = 0, textured = 0, confidence = 0, object = 0;
@@ -480,7 +482,7 @@ class Refiner {
     double background_px;
   };
 
-  [[nodiscard]] PlaneFeatures features_of(const Judging& of, Group group, const GroupCues& seen,
+  [[nodiscard]] PlaneFeatures features_of(const Judging& of, PixelGroup group, const GroupCues& seen,
                                           const Candidate& on, bool kept, double on_plane) const {
     const RegionCues& region = regions_[of.superpixel];
     const OwnPlanes& own = own_[of.superpixel];
@@ -523,7 +525,7 @@ class Refiner {
   void judge(std::size_t i, Work& work) {
     collect(i, work.pixels);
     for (Pixels& group : work.groups) group.clear();
-    for (const SuperpixelPixel& p : work.pixels) work.groups[group_of(own_[i], p)].push_back(p);
+    for (const SuperpixelPixel& p : work.pixels) work.groups[own_[i].group_of(p)].push_back(p);
     for (std::size_t g = 0; g < holes; ++g) work.points[g].set(work.groups[g]);
     const auto pixels = static_cast<double>(work.pixels.size());
     const double known = pixels - static_cast<double>(work.groups[holes].size());
@@ -533,19 +535,20 @@ class Refiner {
       count_pixels_on(work.points, known, candidate);
       compare_with_neighbours(i, candidate);
     }
-    for (std::size_t g = 0; g < kGroups; ++g) judge_group(judging, static_cast<Group>(g), work);
+    for (std::size_t g = 0; g < kGroups; ++g) judge_group(judging, static_cast<PixelGroup>(g), work);
   }
 
   void count_pixels_on(const std::array<PixelArrays, holes>& groups, double known,
                        Candidate& candidate) const {
     const GroundPlane plane = in_floats(candidate.plane);
+    const float within = std::nextafter(kOnPlane, 2.0F);  // count_on() counts what is closer
     std::size_t sum = 0;
     for (std::size_t g = 0; g < holes; ++g)
-      sum += candidate.on[g] = slot(count_on_(groups[g].points(), plane, kOnPlane));
+      sum += candidate.on[g] = slot(count_on_(groups[g].points(), plane, within));
     candidate.matched_on = static_cast<double>(sum) / std::max(1.0, known);
   }
 
-  void judge_group(const Judging& of, Group group, Work& work) {
+  void judge_group(const Judging& of, PixelGroup group, Work& work) {
     const Pixels& pixels = work.groups[group];
     if (pixels.size() >= kMinGroup && !work.candidates.empty()) {
       const std::size_t first = work.features.size();
@@ -566,7 +569,7 @@ class Refiner {
       }
       const auto superpixel = static_cast<std::int32_t>(of.superpixel);
       for (std::size_t k = first; k < work.features.size() && on_judged_; ++k)
-        on_judged_({superpixel, group, pixels, work.planes[k], work.features[k]});
+        on_judged_({superpixel, group, pixels, of.per_sample, work.planes[k], work.features[k]});
     }
     work.ends.push_back(work.features.size());
   }
@@ -648,8 +651,9 @@ std::array<std::string_view, kPlaneFeatures> plane_feature_names() {
 }
 
 float disparity_on(const std::optional<DisparityPlane>& plane, const SuperpixelPixel& pixel) {
-  return !plane || is_near(*plane, pixel, kOnPlane) ? pixel.disparity_px
-                                                    : static_cast<float>(plane->at(pixel.x, pixel.y));
+  if (!plane) return pixel.disparity_px;
+  const float on = in_floats(plane).disparity_px(static_cast<float>(pixel.x), static_cast<float>(pixel.y));
+  return std::abs(pixel.disparity_px - on) <= kOnPlane ? pixel.disparity_px : on;
 }
 
 RefinedDisparity refine_disparity(const RefinementCues& cues, const FittedTrees& right_plane,

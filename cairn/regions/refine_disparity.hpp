@@ -51,6 +51,7 @@ struct JudgedPlane {
   std::int32_t superpixel = 0;
   int group = 0;                            // 0 … 4, see refine_disparity()
   std::span<const SuperpixelPixel> pixels;  // samples, see refine_disparity()
+  double pixels_per_sample = 2;
   std::optional<DisparityPlane> plane;
   const PlaneFeatures& features;
 };

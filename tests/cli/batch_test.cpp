@@ -102,6 +102,32 @@ TEST_F(Batch, ScalesACalibrationWhenAsked) {
   EXPECT_EQ(parsed(merged("scaled")).at(0)["rig"]["focal_px"], 60);
 }
 
+TEST_F(Batch, BinsImagesWhenAsked) {
+  pair_in("in/00", {96, 72});
+  write(at("in/00/calib.txt"), "fx=120\nfy=120\ncx=48\ncy=36\nbaseline=0.1\nndisp=32\nwidth=96\nheight=72\n");
+  for (const char* factor : {"0", "9", "-1"}) {
+    const Outcome refused = run({"batch", "plan", path("in"), "-o", path("none"), "--binning", factor});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find(std::string("--binning: found ") + factor), std::string::npos) << refused.err;
+  }
+  EXPECT_FALSE(fs::exists(at("none")));
+  fs::create_directories(at("l"));
+  fs::create_directories(at("r"));
+  fs::copy(at("in/00/left.png"), at("l/0.png"));
+  fs::copy(at("in/00/right.png"), at("r/0.png"));
+  const std::string calib = path("in/00/calib.txt");
+  for (const std::string& input : {path("in"), path("l") + "," + path("r")}) {  // a frame's files, and a sequence
+    const std::string folder = "run" + std::to_string(input.size());
+    const Outcome planned = run({"batch", "plan", input, "-o", path(folder), "--calib", calib, "--binning", "2"});
+    ASSERT_EQ(planned.code, 0) << planned.err;
+    work("1/1", folder);
+    const Json row = parsed(merged(folder)).at(0);
+    ASSERT_TRUE(row.contains("rig")) << row;
+    EXPECT_EQ(row["rig"]["focal_px"], 60);
+    EXPECT_EQ(row["image"]["width"], 48);
+  }
+}
+
 TEST_F(Batch, HasOneRowPerFrameInOrder) {
   frames(3);
   const std::vector<Json> rows = parsed(undisturbed());

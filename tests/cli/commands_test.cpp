@@ -215,6 +215,27 @@ TEST_F(Command, SegmentBinsImagesAsIfTheyWereOfThatSize) {
   EXPECT_NE(refused.err.find("--binning: found 9, expected 1 to 8"), std::string::npos) << refused.err;
 }
 
+TEST_F(Command, SegmentBinsGivenDisparitiesAndTheRightImageThatChecksThem) {
+  const std::string sample = std::string(CAIRN_SOURCE_DIR) + "/data/samples/overlap";
+  ASSERT_EQ(run({"disparity", sample, "-o", path("whole.pfm")}).code, 0);
+  const Outcome outcome = run({"segment", sample + "/left.png", sample + "/right.png", "--disparity",
+                               path("whole.pfm"), "--binning", "2", "-o", path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Image<float> whole = io::load_disparity(at("whole.pfm"));
+  const Image<float> expected = binned_disparity(whole, 2);
+  const Image<float> found = io::load_disparity(at("out/disparity.png"));
+  ASSERT_EQ(found.size(), expected.size());
+  int known = 0;
+  for (int y = 0; y < found.height(); ++y) {
+    for (int x = 0; x < found.width(); ++x) {
+      if (std::isnan(found(x, y))) continue;  // refused
+      ++known;
+      EXPECT_NEAR(found(x, y), expected(x, y), 0.01F);
+    }
+  }
+  EXPECT_GT(known, found.size().area() / 2);
+}
+
 TEST_F(Command, SegmentComparesPresets) {
   pair_in("many/a");
   pair_in("many/b");

@@ -153,6 +153,15 @@ TEST_F(Given, TheRightImagesOfARecordingCheckItsDepth) {
   EXPECT_FALSE(findings("right.mcap", three));
   EXPECT_TRUE(findings("wrong.mcap", three));
   EXPECT_FALSE(findings("wrong.mcap", "/left/image_rect,/left/depth")) << "nothing there to check it";
+  const auto recorded = [&](const std::string& name) {
+    const Outcome outcome = run({"record", path(name), "--topics", three, "-o", path(name + ".frames")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.err.find("no disparity of these images") != std::string::npos;
+  };
+  EXPECT_FALSE(recorded("right.mcap"));
+  EXPECT_TRUE(recorded("wrong.mcap"));
+  const Outcome motion = run({"odometry", path("wrong.mcap"), "--topics", three, "-o", path("poses.txt")});
+  EXPECT_NE(motion.err.find("no disparity of these images"), std::string::npos) << motion.err;
 }
 
 TEST_F(Given, ARecordingGivesTheSameTracks) {

@@ -79,6 +79,7 @@ if(CAIRN_IO)
   if(CAIRN_SYSTEM_PYTHON)
     cairn_contract(shown_code_runs ${CAIRN_SYSTEM_PYTHON} ${here}/shown_code_runs.py
       ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
+    set_tests_properties(contracts/shown_code_runs PROPERTIES COST 100)  # begins first: it takes a minute
     cairn_contract(site_builds_and_its_links_lead_somewhere ${PROJECT_SOURCE_DIR}/docs/site/build.sh ${PROJECT_BINARY_DIR})
     set_tests_properties(contracts/site_builds_and_its_links_lead_somewhere PROPERTIES
       LABELS "contracts;slow" SKIP_RETURN_CODE 77)

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cairn/core/target.hpp>
+#include <cairn/objects/obstacle_kernels.hpp>
 #include <cmath>
 #include <limits>
 
@@ -110,6 +112,43 @@ TEST(SpaceEquivalence, HoldsForRefinedDisparities) {
         kRig);
     expect_equal_to_reference(
         {scene.disparity, {}, *confidence, ground, background, {}, scene.objects, refined, likely}, kRig);
+  }
+}
+
+/// From the definition, one pixel.
+std::pair<int, int> from_floor(float d, float confidence, float floor_px, float margin) {
+  using Out = kernels::HeightsOut;
+  if (std::isnan(d)) return {0, 0};
+  const float height = d - floor_px;
+  int marks =
+      Out::kKnown | static_cast<int>(std::floor(std::clamp(confidence, 0.0F, 1.0F) * Out::kSureSteps + 0.5F));
+  if (std::abs(height) <= margin) marks |= Out::kOn;
+  if (height > margin) marks |= Out::kFront;
+  const float above = std::clamp(height, Out::kLowest, Out::kHighest) - Out::kLowest;
+  return {static_cast<int>(std::floor(above * Out::kSteps + 0.5F)), marks};
+}
+
+TEST(Obstacles, HeightsAboveTheFloorAreThoseOfTheDefinition) {
+  const Size size{131, 9};
+  const Image<float> disparity = random_input::random_floats(size, 40, 0.2F, 5);
+  const Image<float> confidence = random_input::random_floats(size, 2, 0.1F, 6);
+  const GroundPlane floor{0.05F, 1.5F, 2};
+  for (const Target target : supported_targets()) {
+    const kernels::ObstacleKernels* const run = kernels::obstacle_kernels(target);
+    ASSERT_NE(run, nullptr);
+    for (int y = 0; y < size.height; ++y) {
+      std::vector<std::int32_t> heights(slot(size.width));
+      std::vector<std::int32_t> marks(heights.size());
+      run->in_steps_from_floor(disparity.row(y), confidence.row(y), y, floor, 1, size.width,
+                               {heights.data(), marks.data()});
+      for (int x = 0; x < size.width; ++x) {
+        const float sure = std::isnan(confidence(x, y)) ? 0 : confidence(x, y);
+        const auto expected = from_floor(disparity(x, y), sure,
+                                         floor.disparity_px(static_cast<float>(x), static_cast<float>(y)), 1);
+        EXPECT_EQ(std::pair(heights[slot(x)], marks[slot(x)]), expected)
+            << name(target) << " " << x << " " << y;
+      }
+    }
   }
 }
 

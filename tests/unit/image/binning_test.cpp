@@ -59,8 +59,7 @@ TEST(Binning, ADisparityIsThatOfOneSurfaceOrAHole) {
   Image<float> disparity({6, 2}, kNan, {});
   disparity(0, 0) = 10, disparity(1, 0) = 30, disparity(0, 1) = 12,
                disparity(1, 1) = 31;         // the border of two
-  disparity(2, 0) = 8, disparity(3, 1) = 6;  // half of it
-  disparity(4, 0) = 5;                       // less
+  disparity(2, 0) = 8, disparity(3, 1) = 6;  // the smaller of two
   const Image<float> small = binned_disparity(disparity, 2);
   ASSERT_EQ(small.size(), (Size{3, 1}));
   EXPECT_EQ(small(0, 0), 6);

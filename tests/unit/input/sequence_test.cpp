@@ -337,6 +337,7 @@ TEST(SequenceOfFolders, BinsItsFramesAndTheirCalibration) {
   EXPECT_EQ(stamps_of(frames), stamps_of(whole));
   for (std::size_t i = 0; i < frames.size(); ++i) {
     EXPECT_EQ(frames[i].name, whole[i].name);
+    EXPECT_TRUE(frames[i].left.rgb.empty());
     const Image<Gray> left = cairn::binned(whole[i].left.gray, 3);
     const Image<Gray> right = cairn::binned(whole[i].right, 3);
     EXPECT_EQ(grids::numbers(frames[i].left.gray), grids::numbers(left));

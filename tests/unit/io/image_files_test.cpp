@@ -294,5 +294,23 @@ TEST_F(ImageFiles, EveryAlteredPngByteIsDetected) {
   }
 }
 
+TEST(BinnedImage, HasTheGreyOfItsColours) {
+  io::LoadedImage image{Image<Gray>({4, 2}, Gray{0}, {}), Image<Rgb>({4, 2}, Rgb{}, {})};
+  for (int x = 0; x < 4; ++x) {
+    for (int y = 0; y < 2; ++y)
+      image.rgb(x, y) = {static_cast<Gray>(60 * x), 7, static_cast<Gray>(90 * y + x)};
+  }
+  image.gray = io::grey_of(image.rgb);
+  const io::LoadedImage small = io::binned(image, 2);
+  ASSERT_EQ(small.rgb.size(), (Size{2, 1}));
+  const Image<Gray> expected = io::grey_of(small.rgb);
+  EXPECT_EQ(small.gray(0, 0), expected(0, 0));
+  EXPECT_EQ(small.gray(1, 0), expected(1, 0));
+  EXPECT_EQ(small.rgb(1, 0).r, 150);
+  const io::LoadedImage grey = io::binned({image.gray.clone(), {}}, 2);
+  EXPECT_TRUE(grey.rgb.empty());
+  EXPECT_EQ(grey.gray.size(), (Size{2, 1}));
+}
+
 }  // namespace
 }  // namespace cairn

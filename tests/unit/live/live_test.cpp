@@ -309,6 +309,16 @@ TEST(Runner, DoesNotWaitBetweenRounds) {
   EXPECT_LT(run(*source, options, notebook).seconds, 20);
 }
 
+TEST(Runner, MayAskForTheStatusWhileARoundBeginsAgain) {
+  const auto source = looped([] { return std::make_unique<Camera>(1, 0ms, false); });
+  Notebook notebook;
+  LiveOptions options;
+  options.pace = 0;
+  options.is_ended = [&] { return notebook.count > 20; };
+  EXPECT_LT(run(*source, options, notebook).seconds, 20);
+  EXPECT_FALSE(source->status().is_live);
+}
+
 TEST(Runner, EndsAfterItsTimeAndOnRequest) {
   Camera endless(1'000'000, 1ms, true);
   Notebook notebook;

@@ -167,6 +167,56 @@ TEST(RefineDisparity, TellsEachChoiceWithItsPixels) {
   EXPECT_EQ(pixels, static_cast<std::size_t>(kSize.area() / 2)) << "every second one";
 }
 
+TEST(RefineDisparity, LooksAtFewerPixelsOfLargeSuperpixels) {
+  Image<RegionId> labels({128, 64});
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 128; ++x) labels(x, y) = RegionId{x < 31 ? 0 : x < 63 ? 1 : 2};
+  }
+  RegionScene scene(std::move(labels));
+  scene.place([](int, int y, std::size_t region) {
+    return static_cast<float>(region) * 10 + 0.1F * static_cast<float>(y);
+  });
+  const MergeTree tree = grow_merge_tree(scene.superpixels, scene.cues(), {}, {});
+  const ChosenObjects none{std::vector<std::int32_t>(3), {0}, {}};
+  std::map<std::int32_t, std::vector<std::pair<int, int>>> seen;
+  (void)refine_disparity(
+      {scene.superpixels, tree, none, scene.cues(), {}}, keeping(), {}, [&](const JudgedPlane& choice) {
+        if (choice.plane) return;
+        EXPECT_FLOAT_EQ(choice.features[2], 1) << "all of the superpixel";
+        const double area = static_cast<double>(choice.pixels.size()) * choice.pixels_per_sample;
+        EXPECT_NEAR(static_cast<double>(choice.features[3]), area / (128 * 64), 1e-6);
+        for (const SuperpixelPixel& pixel : choice.pixels)
+          seen[choice.superpixel].emplace_back(pixel.x, pixel.y);
+      });
+  for (const int region : {0, 1}) {
+    const int n = region + 1;  // of 31 · 64 and of 32 · 64 px
+    std::vector<std::pair<int, int>> expected;
+    for (int y = 0; y < 64; ++y) {
+      for (int x = region == 0 ? 0 : 31; x < (region == 0 ? 31 : 63); ++x) {
+        if (x % n == 0 && y % n == 0 && (x / n + y / n) % 2 == 0) expected.emplace_back(x, y);
+      }
+    }
+    EXPECT_EQ(seen[region], expected) << region;
+  }
+}
+
+/// Of two pixels that differ from their superpixel's plane, one sample each way.
+TEST(RefineDisparity, KeepsAGroupOfOneSampleAndJudgesOneOfTwo) {
+  for (const int samples : {1, 2}) {
+    Halves seen;
+    seen.see({4, 4, 1, 1}, 31);
+    if (samples == 2) seen.see({6, 4, 1, 1}, 31);
+    int judged = 0;
+    const RefinedDisparity refined = seen.refined(by_neighbours(), {}, [&](const JudgedPlane& choice) {
+      judged += choice.superpixel == 0 && choice.pixels.size() == slot(samples) ? 1 : 0;
+    });
+    EXPECT_EQ(judged > 0, samples == 2);
+    if (samples == 1) {
+      EXPECT_EQ(refined.disparity_px(4, 4), 31);
+    }
+  }
+}
+
 /// From the definition: the choice for each group is the likeliest of those that were judged.
 TEST(RefineDisparity, MakesTheLikeliestChoiceOfAnyScene) {
   support::Noise noise(7);
@@ -197,7 +247,7 @@ TEST(RefineDisparity, MakesTheLikeliestChoiceOfAnyScene) {
     for (const SuperpixelPixel& pixel : of.pixels) {
       const float expected = disparity_on(of.plane, pixel);
       const float found = refined.disparity_px(pixel.x, pixel.y);
-      EXPECT_TRUE(std::abs(found - expected) < 1e-4F || (std::isnan(expected) && std::isnan(found)));
+      EXPECT_TRUE(found == expected || (std::isnan(expected) && std::isnan(found)));
       if (of.plane) {
         EXPECT_NEAR(refined.confidence(pixel.x, pixel.y), of.likely, 0.01F) << "in steps";
       }
