@@ -116,9 +116,11 @@ TEST_F(Batch, BinsImagesWhenAsked) {
   fs::copy(at("in/00/left.png"), at("l/0.png"));
   fs::copy(at("in/00/right.png"), at("r/0.png"));
   const std::string calib = path("in/00/calib.txt");
-  for (const std::string& input : {path("in"), path("l") + "," + path("r")}) {  // a frame's files, and a sequence
+  for (const std::string& input :
+       {path("in"), path("l") + "," + path("r")}) {  // a frame's files, and a sequence
     const std::string folder = "run" + std::to_string(input.size());
-    const Outcome planned = run({"batch", "plan", input, "-o", path(folder), "--calib", calib, "--binning", "2"});
+    const Outcome planned =
+        run({"batch", "plan", input, "-o", path(folder), "--calib", calib, "--binning", "2"});
     ASSERT_EQ(planned.code, 0) << planned.err;
     work("1/1", folder);
     const Json row = parsed(merged(folder)).at(0);
