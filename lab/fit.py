@@ -483,7 +483,7 @@ def ablation(fitting, checked, path):
 <!-- Written by ./dev fit --ablation; do not edit. -->
 
 This page shows how much each kind of cue contributes: objects found (IoU ≥ 0.5) on the [yardstick](worlds.md#the-yardstick) and on real frames, in colour and in grey, after fitting both sets of trees again without the features of one kind.
-The trees were fitted to {len(fitting.jobs) // 2} frames, in {fitting.folds} folds; the [hints](stages/object_hints.md) come from the network of an earlier `./dev fit`. A difference of fewer than three objects is noise.
+The trees were fitted to {len(fitting.jobs) // 2} frames, in {fitting.folds} folds; the [hints](stages/object_hints.md) come from the network of an earlier `./dev fit`. A difference of fewer than about 15 of the yardstick's objects, or of three of the real frames', is within chance.
 
 """ + "\n".join(lines) + "\n\n" + "\n".join(
         f"- **{cue}**: features whose names contain " + ", ".join(f"“{word}”" for word in words) + "."
