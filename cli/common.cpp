@@ -309,9 +309,9 @@ io::LoadedPair load_images(const io::FrameFiles& files, const Pool& pool) {
 }
 
 Image<Gray> right_grey(const io::FrameFiles& files, int binning, const Pool& pool) {
-  const io::LoadedImage right = files.layout == io::Layout::one ? io::load_picture(*files.right, pool)
-                                                                : io::load_pair(files, pool).right;
-  return binned(right.gray, binning, pool);
+  io::LoadedImage right = files.layout == io::Layout::one ? io::load_picture(*files.right, pool)
+                                                          : io::load_pair(files, pool).right;
+  return binning == 1 ? std::move(right.gray) : binned(right.gray, binning, pool);
 }
 
 namespace {

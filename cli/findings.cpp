@@ -59,6 +59,7 @@ std::optional<Finding> GivenCheck::check(View<const float> given_px, View<const 
                                          const Exec& exec) {
   const int index = frames_++;
   if (!was_refused_ && index >= RigWatch::kFrames && index % RigWatch::kEvery != 0) return std::nullopt;
+  was_refused_ = false;
   const Image<Gray> other = right();
   auto found = check_given_disparity(given_px, StereoPair::from(left, other), rig, exec);
   was_refused_ = found && found->severity == Severity::broken;

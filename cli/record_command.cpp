@@ -104,6 +104,7 @@ int record(const RecordOptions& options) {
   range.num_disparities = sequence->disparities().value_or(range.num_disparities);
   RigWatch watch;
   GivenCheck given;
+  bool is_given_doubtful = false;  // said once
   const EndsBySignal ends(*sequence);
   const Progress progress(sequence->size().value_or(2));
   Recording recording(options.output, *sequence);
@@ -112,10 +113,11 @@ int record(const RecordOptions& options) {
       progress.at(recording.count(), frame->name);
       recording.add(*frame);
       if (!frame->disparity_px.empty()) {
-        if (const std::string says = given_remark(given, *frame, *sequence, exec); !says.empty()) {
-          progress.clear();
-          std::cerr << says;
-        }
+        if (is_given_doubtful) continue;
+        const std::string says = given_remark(given, *frame, *sequence, exec);
+        is_given_doubtful = !says.empty();
+        if (is_given_doubtful) progress.clear();
+        std::cerr << says;
         continue;
       }
       const auto changes = watch.next(input::pair_of(*frame), sequence->rig(), range, exec);

@@ -134,14 +134,15 @@ struct OwnPlanes {
       return p.disparity_px - in_floats(plane).disparity_px(static_cast<float>(p.x), static_cast<float>(p.y));
     };
     if (std::isnan(p.disparity_px)) return holes;
-    if (std::abs(before(main)) <= kNearPlane) return on_main;
+    const float before_main = before(main);
+    if (std::abs(before_main) <= kNearPlane) return on_main;
     if (std::abs(before(second)) <= kNearPlane) return on_second;
-    return before(main) < 0 ? farther : nearer;
+    return before_main < 0 ? farther : nearer;
   }
 };
 
-bool is_near(const DisparityPlane& plane, const SuperpixelPixel& p, float within) {
-  return std::abs(double{p.disparity_px} - plane.at(p.x, p.y)) <= double{within};
+bool is_near(const DisparityPlane& plane, const SuperpixelPixel& p) {
+  return std::abs(double{p.disparity_px} - plane.at(p.x, p.y)) <= double{kNearPlane};
 }
 
 /// How many disparities there are of each whole number.
@@ -329,7 +330,7 @@ class Refiner {
     for (int round = 0; round < rounds; ++round) {
       PlaneFit fit(size_.width);
       for (const SuperpixelPixel& p : pixels) {
-        if (is_near(plane, p, kNearPlane)) fit.add(p);
+        if (is_near(plane, p)) fit.add(p);
       }
       if (fit.count() < kMinMain) return {};
       plane = fit.plane();
@@ -350,7 +351,7 @@ class Refiner {
     std::size_t on = 0;
     for (const SuperpixelPixel& p : pixels) {
       if (p.is_textured && !std::isnan(p.disparity_px)) textured.add(p);
-      on += is_near(*own.main, p, kNearPlane) ? 1U : 0U;
+      on += is_near(*own.main, p) ? 1U : 0U;
     }
     if (textured.count() >= kMinTextured) own.textured = textured.plane();
     own.main_share = static_cast<double>(on) / static_cast<double>(pixels.size());
