@@ -90,7 +90,7 @@ Vec3 similar(Dice& dice, Vec3 colour) {
 }
 
 /// Discs and polygons that cover each other, their sizes by a power law (Lee, Mumford and Huang 2001).
-auto leaves_image(Dice& dice, const std::array<Vec3, 4>& palette) {
+TextureImage leaves_image(Dice& dice, const std::array<Vec3, 4>& palette) {
   std::vector<std::array<std::uint8_t, 3>> image(kImageSide * kImageSide);
   const auto encoded = [](float x) {
     return static_cast<std::uint8_t>(255 * std::sqrt(std::clamp(x, 0.0F, 1.0F)) + 0.5F);

@@ -37,6 +37,9 @@ enum class Pattern : std::uint8_t {
 
 inline constexpr int kImageSide = 256;  // px, a power of two
 
+/// kImageSide² colours, repeated on all sides, gamma 2.
+using TextureImage = std::shared_ptr<const std::vector<std::array<std::uint8_t, 3>>>;
+
 /// Parameters of a texture; cheap to copy.
 struct Look {
   Pattern pattern = Pattern::plain;
@@ -62,8 +65,7 @@ struct Look {
   Vec2 turn{1, 0};  // cosine and sine of the pattern's direction
   Vec3 axis{0, 0, 1};
   std::uint32_t seed = 0;
-  std::shared_ptr<const std::vector<std::array<std::uint8_t, 3>>>
-      image;  // of dead leaves, and of models: kImageSide², periodic, gamma 2
+  TextureImage image;  // of dead leaves, photographs and models
 };
 
 /// For a thing or one of its parts: half of them are plain or two-tone.

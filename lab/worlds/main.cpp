@@ -214,6 +214,8 @@ int run(int argc, char** argv) {
   arguments.world.use = arguments.use == "fit" ? Use::fit : Use::yardstick;
   if (models_for(arguments.world.use).empty())
     std::cerr << "worlds: sweethome3d-furniture is not installed: families of shapes alone, no models\n";
+  if (arguments.world.use == Use::fit && !tours->parsed() && !has_photographs())
+    std::cerr << "worlds: lomiri-wallpapers-16.04 is not installed: no photographs\n";
   frames->parsed()  ? write_frames(arguments)
   : tours->parsed() ? write_tours(arguments)
                     : draw_sheet(arguments);

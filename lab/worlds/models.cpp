@@ -11,6 +11,7 @@
 #include <assimp/Importer.hpp>
 #include <cairn/core/error.hpp>
 #include <cairn/io/raster.hpp>
+#include <cairn/io/read_file.hpp>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -27,6 +28,21 @@ namespace {
 constexpr const char* kFolder = "/usr/share/sweethome3d/furniture/";
 constexpr float kLeast = 0.04F, kMost = 2.6F;  // m, the longest side
 constexpr float kFlat = 0.02F;                 // m; what is lower is no thing
+
+constexpr const char* kPhotographFolder = "/usr/share/backgrounds/";
+constexpr int kPhotographSide = 768;  // px, the shorter one
+constexpr std::size_t kMostBytes = std::size_t{1} << 24U;
+// Those under CC0 or CC-BY: none of share-alike, whose meaning for fitted numbers is not settled.
+constexpr std::array<std::string_view, 10> kPhotographs{"Picture_0B_by_freespace",
+                                                        "Picture_1A_by_freespace",
+                                                        "Wine_by_Jakkub_Mede",
+                                                        "aitzgorri_by_Aitzol_Berasategi",
+                                                        "friends_by_Aitzol_Berasategi",
+                                                        "life_by_Aitzol_Berasategi",
+                                                        "picosdeeuropa_by_Aitzol_Berasategi",
+                                                        "seeding_by_Clements_Engelhardt",
+                                                        "sunset_by_Aitzol_Berasategi",
+                                                        "umang_by_Abhishek_Mudgal"};
 
 /// Kinds that only the validation sets may have, and what is no thing that stands.
 constexpr std::array<std::string_view, 34> kLeftOut{
@@ -113,32 +129,51 @@ std::vector<Model> catalogue(const std::string& file) {
   return models;
 }
 
-/// The picture of a material as a look; nothing without one.
-bool read_texture(const Archive& archive, const std::string& name, Look& look) {
-  const std::string bytes = archive.content(name);
-  if (bytes.empty()) return false;
+/// In RGB; empty if it cannot be read.
+cv::Mat picture_of(const std::string& bytes) {
+  if (bytes.empty()) return {};
   io::Raster raster;
   try {
     raster = io::decode_raster(bytes, io::Palette::colours);
   } catch (const Error&) {
-    return false;  // a model without its picture is still a shape
+    return {};
   }
-  if (raster.bytes_each != 1) return false;
-  cv::Mat picture(raster.size.height, raster.size.width, raster.channels == 3 ? CV_8UC3 : CV_8UC1,
-                  raster.bytes.data());
+  if (raster.bytes_each != 1) return {};
+  cv::Mat picture = cv::Mat(raster.size.height, raster.size.width, raster.channels == 3 ? CV_8UC3 : CV_8UC1,
+                            raster.bytes.data())
+                        .clone();
   if (raster.channels == 1) cv::cvtColor(picture, picture, cv::COLOR_GRAY2RGB);
-  cv::resize(picture, picture, {kImageSide, kImageSide}, 0, 0, cv::INTER_AREA);
+  return picture;
+}
+
+TextureImage texture_of(const cv::Mat& picture) {
+  cv::Mat small;
+  cv::resize(picture, small, {kImageSide, kImageSide}, 0, 0, cv::INTER_AREA);
   std::vector<std::array<std::uint8_t, 3>> image;
   for (int y = kImageSide - 1; y >= 0; --y) {  // v goes up
     for (int x = 0; x < kImageSide; ++x) {
-      const auto& c = picture.at<cv::Vec3b>(y, x);
+      const auto& c = small.at<cv::Vec3b>(y, x);
       image.push_back({c[0], c[1], c[2]});
     }
   }
-  look.pattern = Pattern::dead_leaves;
-  look.period = {1, 1};
-  look.image = std::make_shared<const std::vector<std::array<std::uint8_t, 3>>>(std::move(image));
-  return true;
+  return std::make_shared<const std::vector<std::array<std::uint8_t, 3>>>(std::move(image));
+}
+
+std::filesystem::path file_of(std::string_view photograph) {
+  return kPhotographFolder + std::string(photograph) + ".jpg";
+}
+
+/// The photographs of the package, scaled down: all or, without the package, none.
+std::vector<cv::Mat> photographs() {
+  std::vector<cv::Mat> all;
+  if (!has_photographs()) return all;
+  for (const std::string_view name : kPhotographs) {
+    const cv::Mat picture = picture_of(io::read_file(file_of(name), kMostBytes));
+    if (picture.empty()) throw Error(file_of(name).string() + ": cannot be decoded");
+    const double scale = static_cast<double>(kPhotographSide) / std::min(picture.rows, picture.cols);
+    cv::resize(picture, all.emplace_back(), {}, scale, scale, cv::INTER_AREA);
+  }
+  return all;
 }
 
 Look look_of(const aiMaterial& material, const Archive& archive, const std::string& folder) {
@@ -151,8 +186,12 @@ Look look_of(const aiMaterial& material, const Archive& archive, const std::stri
   material.Get(AI_MATKEY_SHININESS, shine);
   if (shine > 20) look.gloss = 0.04F, look.roughness = 0.3F;
   aiString name;
-  if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == AI_SUCCESS)
-    read_texture(archive, folder + name.C_Str(), look);
+  if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name) != AI_SUCCESS) return look;
+  const cv::Mat picture = picture_of(archive.content(folder + name.C_Str()));
+  if (picture.empty()) return look;  // still a shape
+  look.pattern = Pattern::dead_leaves;
+  look.period = {1, 1};
+  look.image = texture_of(picture);
   return look;
 }
 
@@ -162,6 +201,22 @@ const std::vector<Model>& models_for(Use use) {
   static const std::vector<Model> fit = catalogue(std::string(kFolder) + "Scopia.sh3f");
   static const std::vector<Model> yardstick = catalogue(std::string(kFolder) + "BlendSwap-CC-0.sh3f");
   return use == Use::fit ? fit : yardstick;
+}
+
+bool has_photographs() {
+  return std::filesystem::exists(file_of(kPhotographs.front()));
+}
+
+TextureImage photograph(Dice& dice) {
+  static const std::vector<cv::Mat> all = photographs();
+  if (all.empty()) return {};
+  const cv::Mat& picture = dice.pick(all);
+  const int side = static_cast<int>(draw(dice, 0.25, 1) * kPhotographSide);
+  const int x = dice.below(picture.cols - side + 1), y = dice.below(picture.rows - side + 1);
+  cv::Mat tile;  // beside and above its mirror images, so that the texture has no seams
+  cv::copyMakeBorder(picture({x, y, side, side}), tile, 0, side, 0, side,
+                     cv::BORDER_REFLECT | cv::BORDER_ISOLATED);
+  return texture_of(tile);
 }
 
 ModelMesh mesh_of(const Model& model) {

@@ -33,4 +33,9 @@ struct ModelMesh {
 /// Empty if it cannot be read.
 ModelMesh mesh_of(const Model& model);
 
+/// Whether Debian's lomiri-wallpapers-16.04 is installed, of which photographs under CC0 and CC-BY are used.
+bool has_photographs();
+/// A random part of one of them; empty without that package. Throws Error if one of them is missing.
+TextureImage photograph(Dice& dice);
+
 }  // namespace cairn::worlds

@@ -97,6 +97,7 @@ class Builder {
       : world_(world), options_(options), dice_(dice), models_(models_for(options.use)) {}
 
   void build() {
+    may_show_photographs_ = options_.use == Use::fit;
     const bool is_outdoor = dice_.chance(options_.outdoor_share);
     world_.place = is_outdoor
                        ? Place::outdoor
@@ -234,9 +235,19 @@ class Builder {
     return look;
   }
 
+  /// In worlds of the fit, six tenths of what overlapping leaves would cover shows a photograph. The yardstick, tours and
+  /// the laboratory stay as they were before there were any.
+  Look look_of_thing() {
+    Look look = random_look(dice_);
+    if (look.image == nullptr || !may_show_photographs_) return look;
+    Dice own = dice_.fork(0xF070);
+    if (const TextureImage image = own.chance(0.6) ? photograph(own) : nullptr) look.image = image;
+    return look;
+  }
+
   void paint(Made& made) {
-    const Look one = random_look(dice_);
-    for (Look& look : made.looks) look = dice_.chance(0.5) ? one : random_look(dice_);
+    const Look one = look_of_thing();
+    for (Look& look : made.looks) look = dice_.chance(0.5) ? one : look_of_thing();
     made.looks[0] = one;
     if (dice_.chance(0.08)) made.looks.fill(floor_like_);  // of the floor's own colour
   }
@@ -537,7 +548,7 @@ class Builder {
     const Vec3 u = unit(along), in{inward.x, inward.y, 0};
     if (dice_.chance(0.5)) {  // skirting
       const Vec3 a = from + 0.012F * in;
-      quad(a, along, {0, 0, draw(dice_, 0.05, 0.12)}, random_look(dice_));
+      quad(a, along, {0, 0, draw(dice_, 0.05, 0.12)}, look_of_thing());
     }
     const int items = dice_.below(4);
     for (int k = 0; k < items; ++k) {
@@ -546,19 +557,19 @@ class Builder {
       const float z = draw(dice_, 0.7, 1.6);
       const int kind = dice_.below(4);
       if (kind == 0) {  // a picture or a board
-        quad(from + t * u + Vec3{0, 0, z} + 0.015F * in, w * u, {0, 0, h}, random_look(dice_));
+        quad(from + t * u + Vec3{0, 0, z} + 0.015F * in, w * u, {0, 0, h}, look_of_thing());
       } else if (kind == 1) {  // a window
-        quad(from + t * u + Vec3{0, 0, z} + 0.01F * in, w * u, {0, 0, h}, random_look(dice_)).is_bright =
+        quad(from + t * u + Vec3{0, 0, z} + 0.01F * in, w * u, {0, 0, h}, look_of_thing()).is_bright =
             dice_.chance(0.6);
       } else if (kind == 2) {  // a radiator
-        const Look paint = random_look(dice_);
+        const Look paint = look_of_thing();
         const float deep = draw(dice_, 0.06, 0.12), step = draw(dice_, 0.05, 0.1);
         for (float s = 0; s + 0.6F * step < std::min(w, l - t); s += step) {
           const Vec3 at = from + (t + s) * u + Vec3{0, 0, 0.12F};
           add(beam(at + deep / 2 * in, at + deep / 2 * in + Vec3{0, 0, 0.55F}, deep, 0.6F * step), paint);
         }
       } else {  // a door
-        quad(from + t * u + 0.01F * in, std::min(0.9F, l) * u, {0, 0, 2}, random_look(dice_));
+        quad(from + t * u + 0.01F * in, std::min(0.9F, l) * u, {0, 0, 2}, look_of_thing());
       }
     }
   }
@@ -608,7 +619,7 @@ class Builder {
 
   /// Boards fixed to the wall in front, with things on them.
   void shelves(float depth, float width) {
-    const Look look = random_look(dice_);
+    const Look look = look_of_thing();
     const int boards = dice_.between(2, 4);
     const float w = std::min(width * 0.9F, draw(dice_, 0.8, 2.2)), deep = draw(dice_, 0.22, 0.45);
     const float gap = draw(dice_, 0.28, 0.5), low = draw(dice_, 0.1, 0.5), thick = draw(dice_, 0.015, 0.04);
@@ -648,7 +659,7 @@ class Builder {
     const float below = draw(dice_, 0.5, 0.85);  // the room's floor
     const float w = draw(dice_, 0.8, 2.4), d = draw(dice_, 0.6, 1.4);
     light_room(2, 3, 2.2F);
-    const Look top = marked(dice_.chance(0.4) ? random_look(dice_) : floor_look(dice_)),
+    const Look top = marked(dice_.chance(0.4) ? look_of_thing() : floor_look(dice_)),
                floor = floor_look(dice_), walls = wall_look(dice_);
     floor_like_ = top;
     quad({-4, -4, -below}, {9, 0, 0}, {0, 8, 0}, floor);
@@ -660,7 +671,7 @@ class Builder {
     add(moved(box({d, w, 0.03F}, 0.004F), {d / 2, 0, -0.03F}), top).is_ground = true;
     for (const float y : {-w / 2 + 0.05F, w / 2 - 0.05F})
       for (const float x : {0.06F, d - 0.06F})
-        add(beam({x, y, -below}, {x, y, -0.03F}, 0.05F, 0.05F), random_look(dice_));
+        add(beam({x, y, -below}, {x, y, -0.03F}, 0.05F, 0.05F), look_of_thing());
     const float away = draw(dice_, 0.25, 0.8), eye = draw(dice_, 0.25, 0.9);
     const float aim = std::atan2(eye, away + draw(dice_, 0.15, 0.6) * d) * 180 / kPi;
     camera({-away, draw(dice_, -0.2, 0.2) * w, eye}, draw(dice_, -0.25, 0.25), aim + draw(dice_, -6, 6),
@@ -702,7 +713,7 @@ class Builder {
                                blob({0.16F, 0.2F, 0.25F}, 0.1F, 3, dice_, 40)};
     const auto& places = kPlaces.at(static_cast<std::size_t>(sequence));
     for (std::size_t i = 0; i < (sequence == 3 ? 2U : 3U); ++i) {
-      Look look = random_look(dice_);
+      Look look = look_of_thing();
       look.pattern = i == 0 ? Pattern::label : i == 1 ? Pattern::stripes : Pattern::weave;
       const Vec3 colour = kColours.at(i);
       look.colours = {colour, 0.45F * colour, mix(colour, {0.8F, 0.8F, 0.8F}, 0.35F), 0.7F * colour};
@@ -885,7 +896,7 @@ class Builder {
     const float l = length(along);
     quad(from, along, {0, 0, height}, wall_look(dice_));
     walls_.push_back({{from.x, from.y}, {from.x + along.x, from.y + along.y}, {in.x, in.y}});
-    const Look frame = random_look(dice_);
+    const Look frame = look_of_thing();
     Look glass;
     glass.colours.fill(draw(dice_, 0.02, 0.3) * Vec3{0.8F, 0.95F, 1});
     glass.gloss = 0.08F, glass.roughness = 0.05F;
@@ -922,7 +933,7 @@ class Builder {
     const float h = draw(dice_, 0.8, 1.9), l = length(along), w = draw(dice_, 0.06, 0.16),
                 gap = w * draw(dice_, 0.02, 1.2);
     const Vec3 u = unit(along);
-    const Look paint = random_look(dice_);
+    const Look paint = look_of_thing();
     for (float t = 0; t + w < l; t += w + gap)
       add(beam(from + t * u, from + t * u + Vec3{0, 0, h}, 0.02F, w), paint);
     for (const float z : {0.25F * h, 0.8F * h})
@@ -1033,6 +1044,7 @@ class Builder {
   std::vector<Standing> standing_;
   std::vector<Upright> walls_;
   Look floor_like_;
+  bool may_show_photographs_ = false;
   float nearest_ = 0.3F;
   std::optional<Footprint> table_;
   std::optional<std::pair<float, float>> kerb_;  // its y, and its height

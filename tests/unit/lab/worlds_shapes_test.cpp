@@ -9,6 +9,7 @@
 
 #include "lab/worlds/families.hpp"
 #include "lab/worlds/looks.hpp"
+#include "lab/worlds/models.hpp"
 #include "lab/worlds/shapes.hpp"
 
 namespace cairn::worlds {
@@ -114,6 +115,22 @@ TEST(WorldsLooks, ReturnValuesInRangeAndTheSameOnes) {
         EXPECT_TRUE(a.albedo.x == b.albedo.x && a.albedo.y == b.albedo.y && a.albedo.z == b.albedo.z);
       }
     }
+  }
+}
+
+TEST(WorldsLooks, ShowRandomPartsOfPhotographs) {
+  if (!has_photographs()) GTEST_SKIP() << "lomiri-wallpapers-16.04 is not installed";
+  std::vector<TextureImage> drawn;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    Dice dice(seed);
+    drawn.push_back(photograph(dice));
+    ASSERT_EQ(drawn.back()->size(), std::size_t{kImageSide} * kImageSide);
+  }
+  // What was drawn before makes no difference.
+  for (std::uint64_t seed = 30; seed-- > 0;) {
+    Dice dice(seed);
+    EXPECT_EQ(*photograph(dice), *drawn[seed]);
+    EXPECT_NE(*drawn[seed], *drawn[(seed + 1) % 30]);
   }
 }
 
