@@ -39,31 +39,34 @@ inline void convolve_two(const std::int16_t* const* rows, const Convolution& by,
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Sums = hn::CappedTag<std::int32_t, 8>;
-using Scales = hn::RebindToFloat<Sums>;
-using Products = hn::Repartition<std::int16_t, Sums>;
-using Narrow = hn::Rebind<std::int16_t, Sums>;
+// Sums of outputs: the widest vectors, and those for the last eight outputs of a layer.
+using Wide = hn::CappedTag<std::int32_t, 16>;
+using Eight = hn::CappedTag<std::int32_t, 8>;
 
+template <class Sums>
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(Sums()));
 
 /// Outputs from sums of products.
-HWY_INLINE void put(hn::Vec<Sums> sum, const Convolution& by, int output, std::int16_t* out) {
-  const auto least = hn::Set(Scales(), static_cast<float>(by.least));
-  const auto greatest = hn::Set(Scales(), static_cast<float>(kMaxActivation));
-  const auto biased = hn::Add(sum, hn::LoadU(Sums(), by.bias + output));
-  const auto value = hn::Mul(hn::ConvertTo(Scales(), biased), hn::LoadU(Scales(), by.scale + output));
+template <class Sums>
+HWY_INLINE void put(Sums d, hn::Vec<Sums> sum, const Convolution& by, int output, std::int16_t* out) {
+  const hn::RebindToFloat<Sums> scales;
+  const hn::Rebind<std::int16_t, Sums> narrow;
+  const auto least = hn::Set(scales, static_cast<float>(by.least));
+  const auto greatest = hn::Set(scales, static_cast<float>(kMaxActivation));
+  const auto biased = hn::Add(sum, hn::LoadU(d, by.bias + output));
+  const auto value = hn::Mul(hn::ConvertTo(scales, biased), hn::LoadU(scales, by.scale + output));
   // Rounds to nearest: the sum has no bits left for fractions. NearestInt() would also look for overflows.
-  const auto shift = hn::Set(Scales(), 12582912.0F);  // 1.5 · 2²³
-  const auto shifted = hn::BitCast(Sums(), hn::Add(hn::Clamp(value, least, greatest), shift));
-  hn::StoreU(hn::DemoteTo(Narrow(), hn::Sub(shifted, hn::BitCast(Sums(), shift))), Narrow(), out + output);
+  const auto shift = hn::Set(scales, 12582912.0F);  // 1.5 · 2²³
+  const auto shifted = hn::BitCast(d, hn::Add(hn::Clamp(value, least, greatest), shift));
+  hn::StoreU(hn::DemoteTo(narrow, hn::Sub(shifted, hn::BitCast(d, shift))), narrow, out + output);
 }
 
 /// The outputs of kPixels pixels from `output` on, in kVectors vectors each.
-template <int kVectors, int kPixels>
+template <class Sums, int kVectors, int kPixels>
 HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& by, int output,
                            std::ptrdiff_t first, std::int16_t* HWY_RESTRICT out) {
   const Sums d;
-  const Products pairs;
+  const hn::Repartition<std::int16_t, Sums> pairs;
   hn::Vec<Sums> sums[kPixels][kVectors];
   hn::Vec<Sums> others[kPixels][kVectors];  // for instruction sets that sum two halves separately
 #pragma GCC unroll 12
@@ -79,7 +82,7 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
   for (int row = 0; row < by.side; ++row) {
     const std::int16_t* HWY_RESTRICT in = rows[row] + first * step;
     for (int i = 0; i < by.side * by.inputs; i += 2, weights += 2 * by.outputs) {
-      hn::Vec<Products> two[kPixels];
+      hn::Vec<decltype(pairs)> two[kPixels];
 #pragma GCC unroll 12
       for (int p = 0; p < kPixels; ++p) {
         std::int32_t both = 0;
@@ -88,7 +91,7 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
       }
 #pragma GCC unroll 12
       for (int v = 0; v < kVectors; ++v) {
-        const auto w = hn::LoadU(pairs, weights + 2 * v * kLanes);
+        const auto w = hn::LoadU(pairs, weights + 2 * v * kLanes<Sums>);
 #pragma GCC unroll 12
         for (int p = 0; p < kPixels; ++p)
           sums[p][v] = hn::ReorderWidenMulAccumulate(d, two[p], w, sums[p][v], others[p][v]);
@@ -99,44 +102,50 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
   for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 12
     for (int v = 0; v < kVectors; ++v)
-      put(hn::RearrangeToOddPlusEven(sums[p][v], others[p][v]), by, output + v * kLanes,
+      put(d, hn::RearrangeToOddPlusEven(sums[p][v], others[p][v]), by, output + v * kLanes<Sums>,
           out + p * by.outputs);
   }
 }
 
 /// A row, several pixels at a time: as many sums as fit in registers.
-template <int kVectors>
+template <class Sums, int kVectors>
 HWY_INLINE void row_of(const std::int16_t* const* rows, const Convolution& by, int output, int width,
                        std::int16_t* out) {
   constexpr int kPixels = kVectors < 6 ? 12 / kVectors : 2;
   int x = 0;
   for (; x + kPixels <= width; x += kPixels)
-    outputs_of<kVectors, kPixels>(rows, by, output, x, out + std::ptrdiff_t{x} * by.outputs);
-  for (; x < width; ++x) outputs_of<kVectors, 1>(rows, by, output, x, out + std::ptrdiff_t{x} * by.outputs);
+    outputs_of<Sums, kVectors, kPixels>(rows, by, output, x, out + std::ptrdiff_t{x} * by.outputs);
+  for (; x < width; ++x)
+    outputs_of<Sums, kVectors, 1>(rows, by, output, x, out + std::ptrdiff_t{x} * by.outputs);
 }
 
 inline void convolve(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out) {
-  for (int output = 0; output < by.outputs; output += 48) {
-    switch (std::min(by.outputs - output, 48) / 8) {
+  constexpr int kStep = std::max(8, kLanes<Wide>);  // outputs of kVectors vectors; at most 48 at a time
+  constexpr int kVectors = kStep / kLanes<Wide>;
+  int output = 0;
+  for (int steps = 0; output + kStep <= by.outputs; output += steps * kStep) {
+    steps = std::min(by.outputs - output, 48) / kStep;
+    switch (steps) {
       case 1:
-        row_of<8 / kLanes>(rows, by, output, width, out);
+        row_of<Wide, kVectors>(rows, by, output, width, out);
         break;
       case 2:
-        row_of<16 / kLanes>(rows, by, output, width, out);
+        row_of<Wide, 2 * kVectors>(rows, by, output, width, out);
         break;
       case 3:
-        row_of<24 / kLanes>(rows, by, output, width, out);
+        row_of<Wide, 3 * kVectors>(rows, by, output, width, out);
         break;
       case 4:
-        row_of<32 / kLanes>(rows, by, output, width, out);
+        row_of<Wide, 4 * kVectors>(rows, by, output, width, out);
         break;
       case 5:
-        row_of<40 / kLanes>(rows, by, output, width, out);
+        row_of<Wide, 5 * kVectors>(rows, by, output, width, out);
         break;
       default:
-        row_of<48 / kLanes>(rows, by, output, width, out);
+        row_of<Wide, 6 * kVectors>(rows, by, output, width, out);
     }
   }
+  if (output < by.outputs) row_of<Eight, 8 / kLanes<Eight> >(rows, by, output, width, out);
 }
 
 // ---- 3 × 3 windows, one for each pixel
@@ -188,12 +197,12 @@ HWY_INLINE void transform_tile(const std::int16_t* const* rows, const std::ptrdi
 }
 
 /// Outputs of kTiles tiles from column x on, as far as they are inside the image.
-template <int kCount>
+template <class Sums, int kCount>
 HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const Convolution& by, int output,
                                  int x, int width, std::int16_t* const* out) {
   const Sums d;
-  const Products pairs;
-  HWY_ALIGN std::int32_t products[kPlaces][kTiles][kCount * kLanes];
+  const hn::Repartition<std::int16_t, Sums> pairs;
+  HWY_ALIGN std::int32_t products[kPlaces][kTiles][kCount * kLanes<Sums>];
   const std::int16_t* HWY_RESTRICT weights = by.transformed_weights + 2 * output;
   for (auto& of_place : products) {
     hn::Vec<Sums> sums[kTiles][kCount];
@@ -204,9 +213,9 @@ HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const C
       for (int v = 0; v < kCount; ++v) sums[t][v] = others[t][v] = hn::Zero(d);
     }
     for (int i = 0; i < by.inputs; i += 2, weights += 2 * by.outputs) {
-      hn::Vec<Products> w[kCount];
+      hn::Vec<decltype(pairs)> w[kCount];
 #pragma GCC unroll 12
-      for (int v = 0; v < kCount; ++v) w[v] = hn::LoadU(pairs, weights + 2 * v * kLanes);
+      for (int v = 0; v < kCount; ++v) w[v] = hn::LoadU(pairs, weights + 2 * v * kLanes<Sums>);
 #pragma GCC unroll 12
       for (int t = 0; t < kTiles; ++t) {
         std::int32_t both = 0;
@@ -222,12 +231,12 @@ HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const C
     for (int t = 0; t < kTiles; ++t) {
 #pragma GCC unroll 12
       for (int v = 0; v < kCount; ++v)
-        hn::Store(hn::RearrangeToOddPlusEven(sums[t][v], others[t][v]), d, of_place[t] + v * kLanes);
+        hn::Store(hn::RearrangeToOddPlusEven(sums[t][v], others[t][v]), d, of_place[t] + v * kLanes<Sums>);
     }
   }
   for (int t = 0; t < kTiles; ++t, x += 2) {
     for (int v = 0; v < kCount; ++v) {
-      const auto at = [&](int place) HWY_ATTR { return hn::Load(d, products[place][t] + v * kLanes); };
+      const auto at = [&](int place) HWY_ATTR { return hn::Load(d, products[place][t] + v * kLanes<Sums>); };
       hn::Vec<Sums> down[4][2];
 #pragma GCC unroll 4
       for (int c = 0; c < 4; ++c) sums_from(at(c), at(4 + c), at(8 + c), at(12 + c), down[c]);
@@ -239,7 +248,7 @@ HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const C
 #pragma GCC unroll 2
         for (int c = 0; c < 2; ++c) {
           if (x + c < width)
-            put(hn::ShiftRight<2>(sums[c]), by, output + v * kLanes,
+            put(d, hn::ShiftRight<2>(sums[c]), by, output + v * kLanes<Sums>,
                 out[r] + std::ptrdiff_t{x + c} * by.outputs);
         }
       }
@@ -258,9 +267,12 @@ inline void convolve_two(const std::int16_t* const* rows, const Convolution& by,
       transform_tile(rows, columns, by.inputs, tiles + t * kMaxTiledInputs);
     }
     int output = 0;
-    for (; output + kTogether * kLanes <= by.outputs; output += kTogether * kLanes)
-      outputs_of_tiles<kTogether>(tiles, by, output, x, width, out);
-    for (; output < by.outputs; output += kLanes) outputs_of_tiles<1>(tiles, by, output, x, width, out);
+    for (; output + kTogether * kLanes<Wide> <= by.outputs; output += kTogether * kLanes<Wide>)
+      outputs_of_tiles<Wide, kTogether>(tiles, by, output, x, width, out);
+    for (; output + kLanes<Wide> <= by.outputs; output += kLanes<Wide>)
+      outputs_of_tiles<Wide, 1>(tiles, by, output, x, width, out);
+    for (; output < by.outputs; output += kLanes<Eight>)
+      outputs_of_tiles<Eight, 1>(tiles, by, output, x, width, out);
   }
 }
 
