@@ -82,20 +82,6 @@ class Recording {
   std::size_t count_ = 0;
 };
 
-/// Lines for stderr about the given disparities of a frame that has a right image, too.
-std::string given_remark(GivenCheck& check, const input::SequenceFrame& frame,
-                         const input::Sequence& sequence, const Exec& exec) {
-  if (frame.right.empty()) return {};
-  try {
-    const auto right = [&frame] { return frame.right.clone(); };
-    const auto found =
-        check.check(frame.disparity_px, frame.left.gray, right, sequence.rig(), sequence.name(), exec);
-    return found ? changes_text(frame.name, {{*found, false}}) : std::string();
-  } catch (const Error& error) {
-    return "cairn: frame " + frame.name + ": " + error.what() + "\n";
-  }
-}
-
 int record(const RecordOptions& options) {
   check_empty(options.output);
   const Exec exec = make_exec({});
@@ -103,8 +89,6 @@ int record(const RecordOptions& options) {
   MatchConfig range = Config::preset("default").match;
   range.num_disparities = sequence->disparities().value_or(range.num_disparities);
   RigWatch watch;
-  GivenCheck given;
-  bool is_given_doubtful = false;  // said once
   const EndsBySignal ends(*sequence);
   const Progress progress(sequence->size().value_or(2));
   Recording recording(options.output, *sequence);
@@ -112,15 +96,8 @@ int record(const RecordOptions& options) {
     while (const std::optional<input::SequenceFrame> frame = sequence->next()) {
       progress.at(recording.count(), frame->name);
       recording.add(*frame);
-      if (!frame->disparity_px.empty()) {
-        if (is_given_doubtful) continue;
-        const std::string says = given_remark(given, *frame, *sequence, exec);
-        is_given_doubtful = !says.empty();
-        if (is_given_doubtful) progress.clear();
-        std::cerr << says;
-        continue;
-      }
-      const auto changes = watch.next(input::pair_of(*frame), sequence->rig(), range, exec);
+      const auto changes =
+          watch.next(frame->left.gray, frame->right, sequence->rig(), range, exec, frame->disparity_px);
       if (changes.empty()) continue;
       progress.clear();
       std::cerr << changes_text(frame->name, changes);

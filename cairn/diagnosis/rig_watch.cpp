@@ -21,6 +21,14 @@ bool are_same(const std::vector<Finding>& a, const std::vector<Finding>& b) {
   });
 }
 
+/// Adds what the given disparities do not have in common with the pair, if there is a right image.
+void add_given(std::vector<Finding>& found, View<const float> given_px, View<const Gray> left,
+               View<const Gray> right, const std::optional<StereoRig>& rig, const Exec& exec) {
+  if (right.empty()) return;
+  if (auto of_map = check_given_disparity(given_px, StereoPair::from(left, right), rig, exec))
+    found.push_back(std::move(*of_map));
+}
+
 }  // namespace
 
 FrameFindings judge(const Frame& frame, View<const Gray> left, View<const Gray> right,
@@ -43,17 +51,21 @@ std::vector<FindingChange> RigWatch::next(const Frame& frame, View<const Gray> l
   const bool is_given = !given_px.empty();
   std::vector<Finding> found =
       judge(frame, left, is_given ? View<const Gray>{} : right, rig, config, true, exec).list;
-  if (is_given && !right.empty()) {
-    if (auto of_map = check_given_disparity(given_px, StereoPair::from(left, right), rig, exec))
-      found.push_back(std::move(*of_map));
-  }
+  if (is_given) add_given(found, given_px, left, right, rig, exec);
   return add(std::move(found), rig.has_value());
 }
 
-std::vector<FindingChange> RigWatch::next(const StereoPair& pair, const std::optional<StereoRig>& rig,
-                                          const MatchConfig& range, const Exec& exec) {
+std::vector<FindingChange> RigWatch::next(View<const Gray> left, View<const Gray> right,
+                                          const std::optional<StereoRig>& rig, const MatchConfig& range,
+                                          const Exec& exec, View<const float> given_px) {
   if (!is_due()) return {};
-  return add(diagnose(measure_pair(pair, exec), rig, range, {}), rig.has_value());
+  std::vector<Finding> found;
+  if (given_px.empty()) {
+    found = diagnose(measure_pair(StereoPair::from(left, right), exec), rig, range, {});
+  } else {
+    add_given(found, given_px, left, right, rig, exec);
+  }
+  return add(std::move(found), rig.has_value());
 }
 
 bool RigWatch::is_due() {

@@ -39,9 +39,11 @@ class RigWatch {
   std::vector<FindingChange> next(const Frame& frame, View<const Gray> left, View<const Gray> right,
                                   const std::optional<StereoRig>& rig, const Config& config, const Exec& exec,
                                   View<const float> given_px = {});
-  /// The same without segmentation, by the images alone.
-  std::vector<FindingChange> next(const StereoPair& pair, const std::optional<StereoRig>& rig,
-                                  const MatchConfig& range, const Exec& exec);
+  /// The same without segmentation: by the pair, or, with given disparities, by how they fit the pair. `right` may be
+  /// empty only with them; then nothing is compared.
+  std::vector<FindingChange> next(View<const Gray> left, View<const Gray> right,
+                                  const std::optional<StereoRig>& rig, const MatchConfig& range,
+                                  const Exec& exec, View<const float> given_px = {});
   /// The findings that hold now.
   [[nodiscard]] const std::vector<Finding>& findings() const { return findings_; }
 

@@ -71,10 +71,11 @@ def test_options_files_and_frames_equal_those_of_the_command(command, tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text("tracking:\n  min_hits: 2\nodometry:\n  max_features: 150\n")
     done = subprocess.run(
-        [command, "follow", SEQUENCE, "--json-lines", "--frames", "0:4", "--config", config, "--set", "repair.method=off"],
+        [command, "follow", SEQUENCE, "--json-lines", "--frames", "0:4", "--binning", "2", "--config", config,
+         "--set", "repair.method=off"],
         capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
-    mine = cairn.follow(SEQUENCE, frames="0:4", config=config, repair={"method": "off"})
+    mine = cairn.follow(SEQUENCE, frames="0:4", binning=2, config=config, repair={"method": "off"})
     assert plain("".join(step.to_json() for step in mine)) == plain(done.stdout)
 
 

@@ -13,47 +13,11 @@
 
 #include "reference/match.hpp"
 #include "support/first_difference.hpp"
+#include "support/random_pair.hpp"
 
 namespace {
 
 using namespace cairn;
-
-/// Two windows of larger images, so that rows are unaligned and the stride is odd. Few grey levels in places,
-/// so that costs tie; black patches, so that windows have no energy.
-struct ImagePair {
-  Size size;
-  std::ptrdiff_t stride;
-  std::vector<Gray> left;
-  std::vector<Gray> right;
-
-  ImagePair(Size picture_size, unsigned seed)
-      : size(picture_size), stride(size.width + 7), left(count()), right(count()) {
-    std::mt19937 random(seed);
-    for (std::size_t i = 0; i < left.size(); ++i) {
-      left[i] = dot(static_cast<std::uint32_t>(random()), i);
-      right[i] = i >= 3 && random() % 4 != 0 ? left[i - 3] : dot(static_cast<std::uint32_t>(random()), i);
-    }
-  }
-  [[nodiscard]] StereoPair pair() const {
-    return StereoPair::from(View<const Gray>(left.data() + 3, size, stride),
-                            View<const Gray>(right.data() + 3, size, stride));
-  }
-
- private:
-  [[nodiscard]] std::size_t count() const {
-    return static_cast<std::size_t>(stride) * static_cast<std::size_t>(size.height + 1);
-  }
-  static Gray dot(std::uint32_t bits, std::size_t i) {
-    switch (i / 97 % 4) {
-      case 0:
-        return 0;
-      case 1:
-        return static_cast<Gray>(254 + bits % 2);
-      default:
-        return static_cast<Gray>(bits >> 24);
-    }
-  }
-};
 
 std::string description(Size size, const MatchConfig& c, Target target, int threads) {
   return text(size) + " " + std::string(kCosts[static_cast<std::size_t>(c.cost)].name) + " window " +
@@ -76,7 +40,7 @@ void expect_equal_to_reference(const StereoPair& pair, const MatchConfig& config
 
 void expect_equal_to_reference(Size size, const MatchConfig& config,
                                const std::vector<int>& thread_counts = {1}) {
-  const ImagePair images(size, static_cast<unsigned>(size.width * 31 + config.window_size));
+  const RandomPair images(size, static_cast<unsigned>(size.width * 31 + config.window_size));
   expect_equal_to_reference(images.pair(), config, thread_counts);
 }
 
@@ -244,7 +208,7 @@ INSTANTIATE_TEST_SUITE_P(AllCosts, MatchEquivalence, testing::ValuesIn(all_costs
 
 TEST(PrefilterEquivalence, SobelAndMeanRemovalMeetTheirDefinitions) {
   for (const Size size : {Size{1, 1}, Size{2, 1}, Size{1, 5}, Size{3, 2}, Size{37, 41}}) {
-    const ImagePair images(size, 5);
+    const RandomPair images(size, 5);
     const View<const Gray> image = images.pair().left();
     for (const Target target : supported_targets()) {
       const Exec exec = Exec::with_threads(target == Target::scalar ? 3 : 1, target);
@@ -259,7 +223,7 @@ TEST(PrefilterEquivalence, SobelAndMeanRemovalMeetTheirDefinitions) {
 
 TEST(SubpixelEquivalence, RefinementMeetsItsDefinition) {
   for (const Size size : {Size{1, 1}, Size{5, 3}, Size{70, 9}}) {
-    const ImagePair images(size, 7);
+    const RandomPair images(size, 7);
     for (const MatchMaps maps : {MatchMaps::winner, MatchMaps::full}) {
       const Matches matches = match_windows(
           images.pair(),

@@ -10,8 +10,8 @@
 
 namespace cairn {
 
-/// Two windows of larger images, so that rows are unaligned and the stride is odd. Uniform patches and few
-/// grey levels in places, so that costs tie and every penalty occurs.
+/// Two windows of larger images, so that rows are unaligned and the stride is odd. Black patches,
+/// so that windows have no energy, and few grey levels in places, so that costs tie and every penalty occurs.
 struct RandomPair {
   Size size;
   std::ptrdiff_t stride;

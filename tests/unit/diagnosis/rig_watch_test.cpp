@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cairn/diagnosis/rig_watch.hpp>
 #include <string>
 
@@ -17,13 +18,12 @@ class Watched : public testing::Test {
   std::vector<FindingChange> after(int frames, bool is_swapped, bool has_rig = true) {
     const auto& left = sample_.images.left;
     const auto& right = sample_.images.right;
-    const auto pair =
-        is_swapped ? StereoPair::from(right.gray, left.gray) : StereoPair::from(left.gray, right.gray);
     std::vector<FindingChange> all;
     first_ = -1;
     for (int i = 0; i < frames; ++i) {
       for (FindingChange& change :
-           watch_.next(pair, has_rig ? sample_.calibration.rig : std::nullopt, sample_.suited().match, {})) {
+           watch_.next(is_swapped ? right.gray : left.gray, is_swapped ? left.gray : right.gray,
+                       has_rig ? sample_.calibration.rig : std::nullopt, sample_.suited().match, {})) {
         if (all.empty()) first_ = i;
         all.push_back(std::move(change));
       }
@@ -71,6 +71,21 @@ TEST_F(Watched, SaysThatThereAreNoMetres) {
   const auto changes = after(1, false, false);
   ASSERT_EQ(names(changes), "+no metres");
   EXPECT_EQ(static_cast<int>(changes[0].finding.severity), static_cast<int>(Severity::note));
+}
+
+TEST_F(Watched, ComparesGivenDisparitiesWithThePair) {
+  const auto& left = sample_.images.left;
+  const auto& right = sample_.images.right;
+  const Size size = left.gray.size();
+  Image<float> wrong(size);
+  for (int y = 0; y < size.height; ++y) std::fill_n(wrong.row(y), size.width, static_cast<float>(y % 29));
+  const auto next = [&](View<const Gray> other) {
+    return names(watch_.next(left.gray, other, sample_.calibration.rig, sample_.suited().match, {}, wrong));
+  };
+  EXPECT_EQ(next({}), "");  // nothing to compare with
+  watch_ = {};
+  EXPECT_NE(next(right.gray), "");
+  EXPECT_EQ(next(right.gray), "");  // said once
 }
 
 }  // namespace
