@@ -11,9 +11,9 @@ and of one that went on from it (Wortsman et al. 2022, "Robust fine-tuning"); ST
 
 For each cell of 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
 and the centre and size of its object. It is then quantised: weights to 8 bits per output channel, activations to
-integers. What is drawn in a step depends on its number only, and a checkpoint is written every ten minutes: a fit that was
-stopped goes on, to the same weights as one that was not. A graphics processor is used if PyTorch finds one; then the
-last bits of the weights differ.
+integers. What is drawn in a step depends on its number and on how many there are, and a checkpoint is written every ten
+minutes: a fit that was stopped goes on, to the same weights as one that was not. A graphics processor is used if PyTorch
+finds one, and products of bfloat16 where they are fast; the weights then differ from those of another processor.
 """
 import argparse
 import ctypes
@@ -30,9 +30,10 @@ BATCH = 24  # half of it in colour, half in grey
 RATE, DECAY = 3e-3, 2e-3
 CLOSE_UPS = 0.3  # share of the samples that simulate a narrower field of view
 PASTES = 0.35  # chance, taken twice, that an object of another frame is pasted
+CALM = 0.2  # share of the steps, the last ones, without close-ups and pastes
 WIDTH, HEIGHT = 160, 120  # cells of a frame
 CHANNELS = 12
-FIRST, SECOND, THIRD, LAST = 24, 64, 72, 48  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
+FIRST, SECOND, THIRD, LAST = 32, 64, 96, 48  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
 SHARED_ROOT = 24  # root of the size, in cells, of an object whose cells count as much as the background's
 UNIT = 64  # scale of the input
 DONT_CARE = 255
@@ -111,10 +112,10 @@ class Frames:
 class Sampler:
     """Batches of frames that are mirrored, scaled, shifted, brightened, without a floor …"""
 
-    def __init__(self, frames):
+    def __init__(self, frames, steps):
         import torch
 
-        self.frames = frames
+        self.frames, self.first_calm = frames, round((1 - CALM) * steps)
         self.down = torch.arange(HEIGHT, device=frames.device, dtype=torch.float32)[:, None]
         self.across = torch.arange(WIDTH, device=frames.device, dtype=torch.float32)[None]
 
@@ -136,7 +137,8 @@ class Sampler:
             return low + (high - low) * torch.rand(*shape, generator=random, device=self.frames.device)
 
         cells, truth = self.frames.take(self.numbers(step))
-        narrower = uniform(0, 1) < CLOSE_UPS
+        is_calm = step >= self.first_calm
+        narrower = uniform(0, 1) < (0 if is_calm else CLOSE_UPS)
         scale = torch.exp(torch.where(narrower, uniform(0.25, 0.8), uniform(-0.25, 0.25)))
         x = (self.across + 0.5 - WIDTH / 2 - uniform(-0.1, 0.1) * WIDTH) / scale + WIDTH / 2
         y = (self.down + 0.5 - HEIGHT / 2 - uniform(-0.1, 0.1) * HEIGHT) / scale + HEIGHT / 2
@@ -153,7 +155,7 @@ class Sampler:
         ids = torch.stack([moved(frame, *to) for frame, *to in zip(truth, x, y)]).long()
         ids[~inside] = DONT_CARE
         self.see_closer(data, scale, inside, narrower)
-        for number in (253, 254):
+        for number in () if is_calm else (253, 254):
             self.paste(data, ids, number, uniform)
         noise = torch.randn(BATCH, HEIGHT, WIDTH, generator=random, device=x.device)
         data[:, 0] = data[:, 0] * uniform(0.8, 1.25) + uniform(-0.2, 0.2) + noise * uniform(0, 0.06)
@@ -316,7 +318,7 @@ def network(width):
                 return data
 
             def doubled(small, like):
-                return small.repeat_interleave(2, 2).repeat_interleave(2, 3)[:, :, :like.shape[2], :like.shape[3]] + like
+                return nn.functional.interpolate(small, scale_factor=2)[:, :, :like.shape[2], :like.shape[3]] + like
 
             half = run((0, 1), data)
             quarter = run((2, 3), half)
@@ -325,20 +327,23 @@ def network(width):
             up = run((12,), run((11,), doubled(up, eighth)))
             up = run((14,), run((13,), doubled(up, quarter)))
             up = run((15,), doubled(up, half))
-            return nn.functional.pixel_shuffle(self.end(up), 2)
+            with torch.autocast(data.device.type, enabled=False):
+                return nn.functional.pixel_shuffle(self.end(up.float()), 2)
 
     return Network()
 
 
 def of_library(net, path, frames):
     """Sets the weights to those of a file of the library, as if every activation had the scale of the input: the
-    function is the same. What batch normalisation would have seen is taken from frames."""
+    function is the same. What batch normalisation would have seen is taken from frames. The network may be wider than
+    that of the file: the further channels of a layer see all inputs at random, and no older channel sees them, so the
+    function is the same then, too (the idea of Chen et al. 2016, "Net2Net")."""
     import torch
 
     def tensor(values):
         return torch.tensor(np.array(values, np.float32))
 
-    norms = []
+    olds = []
     for step, (shape, whole, bias, scale) in zip([*net.steps, net.end], fitted_files.read_network(path)):
         inputs, outputs, side = shape[:3]
         is_end = step is net.end
@@ -348,14 +353,20 @@ def of_library(net, path, frames):
             unit = unit * UNIT / np.pad(np.repeat(np.array(STEPS_PER_UNIT, float), 4), (0, 4), constant_values=1)
         weight = whole.reshape(side, side, inputs, -1).transpose(3, 2, 0, 1) * unit[:, None, None, None]
         offset = bias * unit / UNIT
+        olds.append(outputs)
+        of_step = (step if is_end else step[0]).weight
+        if min(of_step.shape[0] - outputs, of_step.shape[1] - inputs) < 0:
+            raise SystemExit(f"fit_hints.py: the network of {path} is wider than the one to be fitted")
         with torch.no_grad():
-            (step if is_end else step[0]).weight.copy_(tensor(weight[:outputs]))
+            of_step[:outputs, inputs:] = 0
+            of_step[:outputs, :inputs] = tensor(weight[:outputs])
             if is_end:
                 step.bias.copy_(tensor(offset[:outputs]))
             else:
                 norm = step[1]
-                norm.weight.fill_(1), norm.bias.copy_(tensor(offset)), norm.running_mean.zero_(), norm.running_var.fill_(1 - norm.eps)
-                norms.append(norm)
+                norm.bias[:outputs] = tensor(offset)
+                norm.running_mean.zero_(), norm.running_var.fill_(1 - norm.eps)
+    norms = [step[1] for step in net.steps]
     seen = {norm: [] for norm in norms}
     hooks = [norm.register_forward_hook(lambda norm, given, _: seen[norm].append(torch.stack(
         [given[0].mean((0, 2, 3)), (given[0] ** 2).mean((0, 2, 3))]))) for norm in norms]
@@ -365,12 +376,12 @@ def of_library(net, path, frames):
             net(frames.take(np.array([number]))[0].float() / UNIT)
         for hook in hooks:
             hook.remove()
-        for step in net.steps:
+        for step, old in zip(net.steps, olds):
             convolution, norm = step[0], step[1]
             mean, square = torch.stack(seen[norm]).mean(0)
             variance = (square - mean ** 2).clamp(min=1e-4)
-            norm.bias += mean
-            norm.weight.copy_((variance + norm.eps).sqrt())
+            norm.bias[:old] += mean[:old]
+            norm.weight[:old] = (variance + norm.eps).sqrt()[:old]
             # The length of a filter changes nothing but the size of its steps.
             length = convolution.weight.flatten(1).norm(dim=1).clamp(min=1e-6)
             convolution.weight /= length[:, None, None, None]
@@ -401,6 +412,16 @@ def loss_of(output, truth, down, across):
                         (middle * weight).sum() / (weight.sum() + 1), 0.3 * (size * weight).sum() / (weight.sum() + 1)])
 
 
+def has_fast_bfloat16(device):
+    """Whether products of 16-bit floating-point numbers are faster than those of 32 bits: on a processor, with AMX."""
+    import torch
+
+    if device.type != "cpu":
+        return torch.cuda.is_bf16_supported()
+    processor = pathlib.Path("/proc/cpuinfo")
+    return processor.exists() and "amx_bf16" in processor.read_text()
+
+
 def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
     """A network fitted to the frames; its weights are an exponential average over the last steps."""
     import torch
@@ -415,14 +436,17 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
         net.load_state_dict(torch.load(start, map_location=device))
     mean.load_state_dict(net.state_dict())
     kept, new = ([v for v in one.state_dict().values() if v.dtype.is_floating_point] for one in (mean, net))
-    sampler = Sampler(frames)
+    sampler = Sampler(frames, steps)
     optimizer = torch.optim.AdamW(net.parameters(), rate, weight_decay=DECAY)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, rate, total_steps=steps, pct_start=0.15)
+    short = has_fast_bfloat16(device)
+    key = {"steps": steps, "rate": rate, "frames": len(frames), "start": str(start), "bfloat16": short,
+           "shapes": [tuple(v.shape) for v in net.state_dict().values()]}
     parts = {"net": net, "mean": mean, "optimizer": optimizer, "schedule": schedule}
     first = 0
     if checkpoint.exists():
         state = torch.load(checkpoint, map_location=device)
-        if (state["steps"], state["width"], state["frames"], state["start"]) == (steps, width, len(frames), str(start)):
+        if state.get("key") == key:
             first = state["step"]
             for name, part in parts.items():
                 part.load_state_dict(state[name])
@@ -431,7 +455,9 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
     losses = torch.zeros(4, device=device)
     for step in range(first, steps):
         data, truth = sampler.batch(step)
-        loss = loss_of(net(data), truth, sampler.down, sampler.across)
+        with torch.autocast(device.type, torch.bfloat16, enabled=short):
+            output = net(data)
+        loss = loss_of(output, truth, sampler.down, sampler.across)
         optimizer.zero_grad()
         loss.sum().backward()
         torch.nn.utils.clip_grad_norm_(net.parameters(), 5.0)
@@ -447,7 +473,7 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
             saved = time.time()
             unfinished = checkpoint.with_suffix(".unfinished")
             torch.save({name: part.state_dict() for name, part in parts.items()}
-                       | {"step": step + 1, "steps": steps, "width": width, "frames": len(frames), "start": str(start)}, unfinished)
+                       | {"step": step + 1, "key": key}, unfinished)
             unfinished.replace(checkpoint)
     return mean.cpu().eval()
 
@@ -535,6 +561,7 @@ def mean(arguments):
     import torch
 
     frames = Frames(arguments.stores, 10**9, torch.device("cpu"))
+    torch.manual_seed(SEED)  # the further channels of a wider network as the fit began with them
     net = network(arguments.width)
     of_library(net, arguments.start, frames)
     first, second = net.state_dict(), torch.load(arguments.of, map_location="cpu")

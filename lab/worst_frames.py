@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Draws the frames in which the preset default misses most objects: worst_frames.py DATA OUT [COUNT]
+"""Draws the frames in which the preset default misses most objects: worst_frames.py YARDSTICK DATA OUT [COUNT]
 
-Covers rendered/train and the Middlebury pairs with masks: one row per frame, the truth next to our result (PYTHONPATH
-names the built module). Middlebury's images may not be published: only their masks are drawn. Prints one line per
-frame: the number of objects found, and the fate of the others.
+Covers the yardstick indoors and Middlebury's pairs with masks in the data collection: one row per frame, the truth next
+to our result (PYTHONPATH names the built module). Middlebury's images may not be published: only their masks are drawn.
+Prints one line per frame, the number of objects found and the fate of the others, and how often each fate is met.
 """
 import argparse
+import collections
 import pathlib
+import re
 
 import cairn
 import numpy as np
@@ -71,20 +73,23 @@ def draw(frames, path, count, show):
         ImageDraw.Draw(sheet).text((4, row * TILE[1] + 4), frame.name, fill="white")
         print(f"| {frame.name} | {objects - len(lost)} of {objects} | {', '.join(lost) or '–'} |", flush=True)
     sheet.save(path)
+    fates = collections.Counter(re.sub(r"\d+ % found", "a part found", fate) for item in judged for fate in item[2])
+    print(f"of {sum(item[1] for item in judged)} objects: " + ", ".join(f"{n} {fate}" for fate, n in fates.most_common()))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("yardstick", type=pathlib.Path, help="folder of the yardstick")
     parser.add_argument("data", type=pathlib.Path, help="the data collection")
     parser.add_argument("out", type=pathlib.Path, help="folder of the images (docs/images)")
     parser.add_argument("count", type=int, nargs="?", default=12, help="rows of each image (default: 12)")
     arguments = parser.parse_args()
-    rooms = sorted(p.parent for p in (arguments.data / "rendered/train/320x240").glob("*/objects.png"))
+    worlds = sorted(p.parent for p in (arguments.yardstick / "indoors").glob("*/objects.png"))
     clutter = sorted(p.parent for p in (arguments.data / "real").glob("middlebury*/*/objects.png"))
-    for name, frames in (("train", rooms), ("middlebury", clutter)):
+    for name, frames in (("yardstick", worlds), ("middlebury", clutter)):
         if not frames:
-            parser.error(f"{arguments.data}: found no frames of {name} with objects.png")
-        draw(frames, arguments.out / f"worst_{name}.png", min(arguments.count, len(frames)), name == "train")
+            parser.error(f"found no frames of {name} with objects.png")
+        draw(frames, arguments.out / f"worst_{name}.png", min(arguments.count, len(frames)), name == "yardstick")
 
 
 if __name__ == "__main__":

@@ -170,7 +170,8 @@ def test_every_frame_comes_once_in_a_round(hints):
     assert (hints.Sampler.numbers(sampler, 1000) == hints.Sampler.numbers(sampler, 1000)).all()
 
 
-def test_a_fit_goes_on_from_the_networks_integers(hints, tmp_path):
+@pytest.mark.parametrize("width", (1 / 3, 1 / 2))  # the same, and wider
+def test_a_fit_goes_on_from_the_networks_integers(hints, tmp_path, width):
     torch = pytest.importorskip("torch")
     store(hints, tmp_path, [(1, slice(30, 60))])
     frames = hints.Frames([tmp_path], 10, torch.device("cpu"))
@@ -181,7 +182,7 @@ def test_a_fit_goes_on_from_the_networks_integers(hints, tmp_path):
         torch.nn.init.uniform_(step[1].weight, 0.5, 2)
         torch.nn.init.normal_(step[1].bias, 0.2, 0.3)
     hints.write_fitted(hints.rounded(net, frames), tmp_path / "hints.bin")
-    again = hints.network(1 / 3)
+    again = hints.network(width)
     hints.of_library(again, tmp_path / "hints.bin", frames)
     again.eval()
     data = frames.take(np.array([0, 1]))[0].float() / hints.UNIT
@@ -193,7 +194,7 @@ def test_a_fit_goes_on_from_the_networks_integers(hints, tmp_path):
 def test_targets_of_the_network(hints, tmp_path):
     torch = pytest.importorskip("torch")
     store(hints, tmp_path, [(3, slice(60, 80)), (9, slice(80, 90))])
-    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")))
+    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
     ids = torch.from_numpy(np.load(tmp_path / "truth.npy")[:1].astype(np.int64)).repeat(hints.BATCH, 1, 1)
     ids[:, 0, 0] = hints.DONT_CARE
     targets = sampler.targets(ids)[0].numpy()
@@ -207,7 +208,7 @@ def test_a_pasted_object_hides_what_is_behind_it(hints, tmp_path, monkeypatch):
     torch = pytest.importorskip("torch")
     monkeypatch.setattr(hints, "PASTES", 1)
     store(hints, tmp_path, [(1, slice(60, 90))])
-    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")))
+    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
     random = torch.Generator().manual_seed(1)
     data = torch.zeros(hints.BATCH, hints.CHANNELS, hints.HEIGHT, hints.WIDTH)
     data[:, 3], data[:, 4] = 0.5, 1
@@ -226,7 +227,7 @@ def test_a_pasted_object_hides_what_is_behind_it(hints, tmp_path, monkeypatch):
 def test_a_close_view_has_the_input_of_a_narrow_lens(hints, tmp_path):
     torch = pytest.importorskip("torch")
     store(hints, tmp_path, [])
-    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")))
+    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
     data = torch.zeros(hints.BATCH, hints.CHANNELS, hints.HEIGHT, hints.WIDTH)
     inside = torch.ones(hints.BATCH, hints.HEIGHT, hints.WIDTH, dtype=torch.bool)
     inside[:, :, :40] = False
