@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 the cairn authors
-"""Compares sky, ground, obstacles and objects with the truth outdoors: outdoors.py DATA YARDSTICK [--fit WORLDS]
+"""Compares sky, ground, obstacles and objects with the truth outdoors: outdoors.py DATA YARDSTICK [--report | --fit WORLDS]
 (PYTHONPATH: the built module)
 
-Prints tables for the outdoor fit set, the yardstick and validation: shares of pixels, with the share of indoor images that is
-wrongly sky, and objects found by their distance.
+Prints tables for the outdoor fit set and the yardstick: shares of pixels, with the share of indoor images that is
+wrongly sky, and objects found by their distance. --report adds validation, which is rarely scored.
 --fit prints the coefficients of sky_probability() in cairn/objects/sky.cpp, fitted to the superpixels of the rendered
 fit sets and of 500 worlds, in colour.
 """
@@ -109,7 +109,9 @@ def main():
     with multiprocessing.Pool(2) as pool:
         if "--fit" in sys.argv:
             return fit(outdoors + rooms + frames_in(sys.argv[4])[:FIT_WORLDS], pool)
-        outside = {"train_outdoor": outdoors, "yardstick outdoors": frames_in(yardstick / "outdoors"), "validate_outdoor": reported}
+        outside = {"train_outdoor": outdoors, "yardstick outdoors": frames_in(yardstick / "outdoors")}
+        if "--report" in sys.argv:
+            outside["validate_outdoor"] = reported
         inside = {"rooms of the fit": rooms, "yardstick indoors": frames_in(yardstick / "indoors")}
         measured = {name: list(zip(*pool.map(counts_of, frames, chunksize=4))) for name, frames in (outside | inside).items()}
     print(table(["% of the pixels", "sky: precision", "recall", "called obstacle", "ground nearer than 12 m: precision", "recall",
