@@ -119,31 +119,25 @@ HWY_INLINE void row_of(const std::int16_t* const* rows, const Convolution& by, i
     outputs_of<Sums, kVectors, 1>(rows, by, output, x, out + std::ptrdiff_t{x} * by.outputs);
 }
 
+// Outputs: a layer has a multiple of it, or eight more.
+constexpr int kStep = std::max(8, kLanes<Wide>);
+
+/// `steps` · kStep outputs of a row, from `output` on; at most kMost steps.
+template <int kMost>
+HWY_INLINE void steps_of_row(int steps, const std::int16_t* const* rows, const Convolution& by, int output,
+                             int width, std::int16_t* out) {
+  if constexpr (kMost > 1) {
+    if (steps < kMost) return steps_of_row<kMost - 1>(steps, rows, by, output, width, out);
+  }
+  row_of<Wide, kMost * kStep / kLanes<Wide> >(rows, by, output, width, out);
+}
+
 inline void convolve(const std::int16_t* const* rows, const Convolution& by, int width, std::int16_t* out) {
-  constexpr int kStep = std::max(8, kLanes<Wide>);  // outputs of kVectors vectors; at most 48 at a time
-  constexpr int kVectors = kStep / kLanes<Wide>;
+  constexpr int kMost = 48 / kStep;
   int output = 0;
   for (int steps = 0; output + kStep <= by.outputs; output += steps * kStep) {
-    steps = std::min(by.outputs - output, 48) / kStep;
-    switch (steps) {
-      case 1:
-        row_of<Wide, kVectors>(rows, by, output, width, out);
-        break;
-      case 2:
-        row_of<Wide, 2 * kVectors>(rows, by, output, width, out);
-        break;
-      case 3:
-        row_of<Wide, 3 * kVectors>(rows, by, output, width, out);
-        break;
-      case 4:
-        row_of<Wide, 4 * kVectors>(rows, by, output, width, out);
-        break;
-      case 5:
-        row_of<Wide, 5 * kVectors>(rows, by, output, width, out);
-        break;
-      default:
-        row_of<Wide, 6 * kVectors>(rows, by, output, width, out);
-    }
+    steps = std::min((by.outputs - output) / kStep, kMost);
+    steps_of_row<kMost>(steps, rows, by, output, width, out);
   }
   if (output < by.outputs) row_of<Eight, 8 / kLanes<Eight> >(rows, by, output, width, out);
 }
