@@ -83,8 +83,8 @@ class Frames:
         import torch
 
         self.device = device
-        cells = [np.load(store / "cells.npy", mmap_mode="r") for store in stores]
-        truth = [np.load(store / "truth.npy", mmap_mode="r") for store in stores]
+        cells = [np.load(store / "cells.npy", mmap_mode="c") for store in stores]
+        truth = [np.load(store / "truth.npy", mmap_mode="c") for store in stores]
         cells[0], truth[0] = cells[0][:2 * limit], truth[0][:2 * limit]
         self.starts = np.cumsum([0, *map(len, cells)])
         self.cells, self.truth = cells, truth
@@ -95,16 +95,15 @@ class Frames:
     def __len__(self):
         return int(self.starts[-1]) // 2
 
-    def take(self, numbers):
+    def take(self, number):
+        """Inputs and true objects of a frame."""
         import torch
 
         if self.device.type != "cpu":
-            at = torch.as_tensor(numbers, device=self.device)
-            return self.cells[at], self.truth[at]
-        which = np.searchsorted(self.starts, numbers, "right") - 1
-        pick = [(w, n - self.starts[w]) for w, n in zip(which, numbers)]
-        return (torch.from_numpy(np.stack([self.cells[w][k] for w, k in pick])),
-                torch.from_numpy(np.stack([self.truth[w][k] for w, k in pick])))
+            return self.cells[number], self.truth[number]
+        store = np.searchsorted(self.starts, number, "right") - 1
+        at = number - self.starts[store]
+        return torch.from_numpy(self.cells[store][at]), torch.from_numpy(self.truth[store][at])
 
 
 # ---- samples
@@ -136,7 +135,7 @@ class Sampler:
         def uniform(low, high, shape=(BATCH, 1, 1)):
             return low + (high - low) * torch.rand(*shape, generator=random, device=self.frames.device)
 
-        cells, truth = self.frames.take(self.numbers(step))
+        cells, truth = zip(*map(self.frames.take, self.numbers(step)))
         is_calm = step >= self.first_calm
         narrower = uniform(0, 1) < (0 if is_calm else CLOSE_UPS)
         scale = torch.exp(torch.where(narrower, uniform(0.25, 0.8), uniform(-0.25, 0.25)))
@@ -373,7 +372,7 @@ def of_library(net, path, frames):
     net.eval()
     with torch.no_grad():
         for number in np.linspace(0, 2 * len(frames) - 1, CALIBRATION).astype(int):
-            net(frames.take(np.array([number]))[0].float() / UNIT)
+            net(frames.take(number)[0][None].float() / UNIT)
         for hook in hooks:
             hook.remove()
         for step, old in zip(net.steps, olds):
@@ -485,7 +484,7 @@ def rounded(net, frames):
     seen = [0.0] * len(net.steps)
     with torch.no_grad():
         for number in np.linspace(0, 2 * len(frames) - 1, CALIBRATION).astype(int):
-            net(frames.take(np.array([number]))[0].cpu().float() / UNIT, seen)
+            net(frames.take(number)[0][None].cpu().float() / UNIT, seen)
     # Summands need a common scale: the decoder's 1×1 layers use that of the encoder's.
     for small, like in ((10, 6), (12, 3), (14, 1)):
         seen[small] = seen[like] = max(seen[small], seen[like])

@@ -10,6 +10,7 @@
 #include <cairn/io/point_cloud.hpp>
 #include <cairn/io/read_file.hpp>
 #include <cairn/io/rle.hpp>
+#include <cairn/objects/ground_steps.hpp>
 #include <cairn/output/json.hpp>
 #include <cairn/output/overlay.hpp>
 #include <cairn/output/results.hpp>
@@ -120,6 +121,20 @@ Json scan_json(const Frame& frame, const Provenance& provenance) {
           {"ranges_m", ranges}};
 }
 
+/// null if no floor is known in metres.
+Json steps_json(const Frame& frame, const Provenance& provenance) {
+  const auto floor = floor_frame(frame.ground, provenance.rig);
+  if (!floor) return nullptr;
+  Json all = Json::array();
+  for (const GroundStep& step :
+       find_steps(frame.objects.labels, frame.disparity.disparity_px, frame.confidence, *floor,
+                  *provenance.rig, provenance.config.obstacles)) {
+    all.push_back(
+        {{"from_m", json(step.from_m)}, {"to_m", json(step.to_m)}, {"height_m", json(step.height_m)}});
+  }
+  return all;
+}
+
 Json option_value(const OptionInfo& option) {
   if (option.type == "bool") return option.value == "true";
   if (option.type == "int" || option.type == "float") {
@@ -170,6 +185,7 @@ void add_findings(Json& j, const Frame& frame, const Provenance& provenance) {
   j["left_out"] = Json::array();
   for (const RejectedObstacle& left : frame.left_out) j["left_out"].push_back(json(left));
   j["obstacle_scan"] = frame.space.empty() ? Json(nullptr) : scan_json(frame, provenance);
+  j["ground_steps"] = frame.space.empty() ? Json(nullptr) : steps_json(frame, provenance);
 }
 
 // ---- the folder ----

@@ -28,7 +28,7 @@ struct Provenance {
 
 /// The version of objects.json: a reader of 1.x may rely on everything in docs/schema/objects.schema.json for
 /// 1.0; additions increase the number after the dot.
-inline constexpr const char* kObjectsSchema = "2.0";
+inline constexpr const char* kObjectsSchema = "2.1";
 
 /// The content of objects.json (docs/formats.md). Ends with a newline.
 std::string objects_json(const Frame& frame, const Provenance& provenance);

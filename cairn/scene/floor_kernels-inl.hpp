@@ -17,10 +17,23 @@ inline void find_below(const FloorRow& given, int y, int width, const float* dis
   }
 }
 
-inline void reject_marked(const Reject* marks, int width, float* CAIRN_RESTRICT disparity_px,
-                          Reject* CAIRN_RESTRICT reject) {
+inline void find_little_below(const FloorRow& given, int y, int width, const float* disparity_px,
+                              float* CAIRN_RESTRICT above_floor_px) {
+  const FloorRow row = given;
+  const GroundPlane p = row.plane;
   for (int x = 0; x < width; ++x) {
-    const bool marked = marks[x] != Reject::none;
+    const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
+    const float d = disparity_px[x];
+    const bool below = (floor + row.infinity > 0) & (d < floor - row.margin) &
+                       (2 * (d + row.infinity) > floor + row.infinity);
+    above_floor_px[x] = below ? d - floor : std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+inline void reject_marked(const Reject* marks, const float* level_px, int width,
+                          float* CAIRN_RESTRICT disparity_px, Reject* CAIRN_RESTRICT reject) {
+  for (int x = 0; x < width; ++x) {
+    const bool marked = (marks[x] != Reject::none) & std::isnan(level_px[x]);
     disparity_px[x] = marked ? std::numeric_limits<float>::quiet_NaN() : disparity_px[x];
     reject[x] |= marked ? Reject::below_ground : Reject::none;
   }
@@ -37,7 +50,7 @@ inline void label_floor(const FloorRow& given, int y, int width, const float* di
   }
 }
 
-inline constexpr FloorKernels kFloorKernels{find_below, reject_marked, label_floor};
+inline constexpr FloorKernels kFloorKernels{find_below, find_little_below, reject_marked, label_floor};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -23,8 +23,12 @@ struct FloorRow {
 struct FloorKernels {
   /// The disparities of row `y` that are below the floor; NaN elsewhere.
   void (*find_below)(const FloorRow& floor, int y, int width, const float* disparity_px, float* below_px);
-  /// Rejects the marked disparities of a row as below the ground.
-  void (*reject_marked)(const Reject* marks, int width, float* disparity_px, Reject* reject);
+  /// The same minus the floor's disparity, and NaN below twice the floor's distance, too.
+  void (*find_little_below)(const FloorRow& floor, int y, int width, const float* disparity_px,
+                            float* above_floor_px);
+  /// Rejects the marked disparities of a row as below the ground, but for those of level surfaces (NaN elsewhere).
+  void (*reject_marked)(const Reject* marks, const float* level_px, int width, float* disparity_px,
+                        Reject* reject);
   /// label_floor() for the pixels of row `y`.
   void (*label_floor)(const FloorRow& floor, int y, int width, const float* disparity_px,
                       std::uint8_t* label);

@@ -38,14 +38,15 @@ kernels::FloorRow floor_row(const Ground& ground, const std::optional<StereoRig>
 
 // A surface below the floor's plane is visible beyond the floor's edge. It is smooth and wide, unlike a mirror
 // image, which is mixed with the floor's own pattern.
-constexpr float kWidestStep = 0.2F;   // px; larger steps between neighbours separate two surfaces
-constexpr double kMinSurface = 0.02;  // share of the image
+constexpr float kWidestStep = 0.2F;       // px; larger steps between neighbours separate two surfaces
+constexpr float kWidestLevelStep = 0.5F;  // px; of the distance from the floor's disparity
+constexpr double kMinSurface = 0.02;      // share of the image
 constexpr int kMinPixels = 64;
 
 /// Rejects all disparities except those of such surfaces.
-SpeckleConfig all_but_surfaces(Size image) {
+SpeckleConfig all_but_surfaces(Size image, float widest_step_px) {
   const auto least = static_cast<int>(kMinSurface * static_cast<double>(image.area()));
-  return {std::max(least, kMinPixels) - 1, kWidestStep};
+  return {std::max(least, kMinPixels) - 1, widest_step_px};
 }
 
 void require_sound(const std::vector<PointPair>& points) {
@@ -130,17 +131,21 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
   const Size size = disparity.disparity_px.size();
   const kernels::FloorKernels& run = kernels::floor_kernels(exec);
   const kernels::FloorRow floor = floor_row(ground, rig, config);
-  DisparityMap below{Image<float>(size, exec.pool), Image<Reject>(size, Reject::none, exec.pool)};
-  parallel_for(exec, size.height, 64, [&](int first, int last) {
-    for (int y = first; y < last; ++y)
-      run.find_below(floor, y, size.width, disparity.disparity_px.row(y), below.disparity_px.row(y));
-  });
-  // Marked pixels are mirror images or wrong matches; the others are a surface beyond the floor's edge.
-  below = reject_speckles(std::move(below), all_but_surfaces(size), exec);
+  const auto all_but = [&](auto find, float widest_step_px) {
+    DisparityMap below{Image<float>(size, exec.pool), Image<Reject>(size, Reject::none, exec.pool)};
+    parallel_for(exec, size.height, 64, [&](int first, int last) {
+      for (int y = first; y < last; ++y)
+        find(floor, y, size.width, disparity.disparity_px.row(y), below.disparity_px.row(y));
+    });
+    return reject_speckles(std::move(below), all_but_surfaces(size, widest_step_px), exec);
+  };
+  // What neither rule keeps is a mirror image or a wrong match; the rest is a surface beyond the floor's edge.
+  const DisparityMap upright = all_but(run.find_below, kWidestStep);
+  const DisparityMap level = all_but(run.find_little_below, kWidestLevelStep);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
-      run.reject_marked(below.reject.row(y), size.width, disparity.disparity_px.row(y),
-                        disparity.reject.row(y));
+      run.reject_marked(upright.reject.row(y), level.disparity_px.row(y), size.width,
+                        disparity.disparity_px.row(y), disparity.reject.row(y));
     }
   });
   return disparity;

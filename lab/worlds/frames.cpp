@@ -131,6 +131,11 @@ void write_frame(const WorldFrame& frame, const fs::path& folder) {
          {"centroid_visible_cam",
           visible != centres.end() ? json_of(visible->second) : nlohmann::ordered_json()}});
   }
+  for (const Raised& part : frame.world.raised) {
+    scene["raised"].push_back({{"edge", {part.edge.x, part.edge.y}},
+                               {"inward", {part.inward.x, part.inward.y}},
+                               {"height_m", part.height_m}});
+  }
   write_text(unfinished / "scene.json",
              scene.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   fs::rename(unfinished, folder);

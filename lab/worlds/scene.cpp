@@ -295,7 +295,7 @@ class Builder {
     const float half = of_metre * sides[2];
     if (half > 0.5F * w) return false;
     const float least = how == "on" || how == "shelf" ? 0.75F * kSmall : kSmall;
-    if (of_metre * std::sqrt(sides[1] * sides[2]) < least * w && !dice_.chance(0.06)) return false;
+    if (of_metre * std::sqrt(sides[1] * sides[2]) < least * w && !dice_.chance(small_share_)) return false;
     const float margin = how == "edge" ? -0.8F * half : 0.1F * half;
     return middle.x > margin && middle.x < w - margin && middle.y > margin && middle.y < h - margin;
   }
@@ -328,6 +328,7 @@ class Builder {
            std::size_t support = std::numeric_limits<std::size_t>::max()) {
     const auto [low, high] = bounds(made.mesh);
     const Footprint footprint{at, {(high.x - low.x) / 2, (high.y - low.y) / 2}, yaw};
+    if (bottom == 0) bottom = height_of_ground(at);
     const float top = bottom + high.z;
     if (!is_free(footprint, bottom, top, gap, support)) return false;
     // Nothing in the camera's face.
@@ -335,7 +336,7 @@ class Builder {
     const Vec2 apart{eye.x - at.x, eye.y - at.y};
     const float radius = std::hypot(footprint.half.x, footprint.half.y);
     if (std::hypot(apart.x, apart.y) < radius + nearest_ && eye.z < top + nearest_) return false;
-    if (!is_of_good_size(made.mesh, at, bottom, how)) return false;
+    if (how != "row" && !is_of_good_size(made.mesh, at, bottom, how)) return false;
     if (share_of_image(footprint, bottom, top) > kLargest) return false;
     if (table_ && bottom == 0 && !is_inside(footprint, *table_)) return false;
     if (world_.things.size() >= 250) return false;
@@ -865,6 +866,7 @@ class Builder {
   /// A large ground, a little uneven: a grid whose cells are as fine as they look.
   Body& ground(const Look& look, float unevenness, float slope) {
     constexpr int kCells = 72;
+    is_level_ = slope == 0;
     Mesh mesh;
     const std::uint64_t seed = dice_.bits();
     const float p1 = static_cast<float>(seed % 628) / 100, p2 = static_cast<float>(seed / 628 % 628) / 100;
@@ -940,6 +942,74 @@ class Builder {
       add(beam(from + Vec3{0, 0, z}, from + along + Vec3{0, 0, z}, 0.04F, 0.08F), paint);
   }
 
+  [[nodiscard]] float height_of_ground(Vec2 at) const {
+    float height = 0;
+    for (const Raised& part : world_.raised) {
+      if ((at.x - part.edge.x) * part.inward.x + (at.y - part.edge.y) * part.inward.y > 0)
+        height = std::max(height, part.height_m);
+    }
+    return height;
+  }
+
+  /// A kerb across the robot's way, up or down, perhaps with stones along it.
+  void kerb_ahead(Dice dice) {
+    const bool is_down = dice.chance(0.4);
+    const float height = draw(dice, 0.04, 0.2), away = draw(dice, 0.9, 5), turn = draw(dice, -0.6, 0.6);
+    const Vec3 ahead = polar(is_down ? -1.0F : 1.0F, turn), edge{away, 0, 0};
+    constexpr float kWide = 90, kDeep = 70;
+    Mesh slab = moved(turned(box({kDeep, kWide, height + 0.3F}), kZ, turn),
+                      edge + kDeep / 2 * ahead + Vec3{0, 0, -0.3F});
+    add(std::move(slab), ground_look(dice)).is_ground = true;
+    if (dice.chance(0.6)) {
+      const float stone = draw(dice, 0.08, 0.3), gap = 0.01F, long_ = draw(dice, 0.4, 1.2);
+      const Look look = wall_look(dice);
+      const Vec3 along{-ahead.y, ahead.x, 0};
+      for (float t = -12; t < 12; t += long_ + gap) {
+        add(moved(turned(box({stone, long_, height + 0.004F}, 0.01F), kZ, turn),
+                  edge + stone / 2 * ahead + t * along),
+            look)
+            .is_ground = true;
+      }
+    }
+    world_.raised.push_back({{edge.x, edge.y}, {ahead.x, ahead.y}, height});
+  }
+
+  /// Cars that are parked behind or beside each other, on one side of the way or on both.
+  void parked_cars(float left, float right) {
+    const auto car = std::ranges::find(families(), std::string_view("car"), &Family::name);
+    const float way = world_.scene.rig.eye.y;
+    for (const float border : {left, right}) {
+      if (std::abs(border - way) < 3.5F || dice_.chance(0.3)) continue;
+      const bool is_across = std::abs(border - way) > 6 && dice_.chance(0.4);
+      const float room = draw(dice_, 0.4, 1.6),
+                  y = border - std::copysign(is_across ? 2.6F : 1.2F, border - way);
+      float x = draw(dice_, 1, 7);
+      for (int k = dice_.between(2, 8); k > 0; --k) {
+        Dice own = dice_.fork(0xCA4);
+        Made made{car->make(own), {}, "car"};
+        resize(made.mesh, draw(dice_, 3.4, 4.8));
+        paint(made);
+        const auto [low, high] = bounds(made.mesh);
+        const float reach = is_across ? high.y - low.y : high.x - low.x;
+        const float yaw =
+            (is_across ? kPi / 2 : 0) + (dice_.chance(0.5) ? kPi : 0) + draw(dice_, -0.04, 0.04);
+        x += reach / 2;
+        put(made, {x, y + draw(dice_, -0.15, 0.15)}, yaw, 0, 0.05F, "row");
+        x += reach / 2 + room * draw(dice_, 0.6, 1.4) + (dice_.chance(0.15) ? 5.0F : 0.0F);
+      }
+    }
+  }
+
+  /// Doors of garages, or gates, in a row.
+  void gates(Vec3 from, Vec3 along, float height, Dice dice) {
+    const Vec3 u = unit(along), in{-u.y, u.x, 0};
+    const float w = draw(dice, 2.2, 3), h = std::min(height, draw(dice, 1.9, 2.4)),
+                gap = draw(dice, 0.1, 0.8);
+    const Look look = random_look(dice);
+    for (float t = draw(dice, 0.1, 4); t + w < length(along); t += w + gap)
+      quad(from + t * u + 0.03F * in, w * u, {0, 0, h}, look);
+  }
+
   void outdoors() {
     Scene& scene = world_.scene;
     const bool is_sunny = dice_.chance(0.55), is_dusk = dice_.chance(0.12);
@@ -953,6 +1023,9 @@ class Builder {
       scene.lamps.push_back({unit({std::cos(turn), std::sin(turn), std::tan(high)}), 0,
                              level * draw(dice_, 0.9, 1.6) * Vec3{1, 0.95F, 0.86F}});
     }
+    const bool is_fit = options_.use == Use::fit;  // the yardstick is older than streets, and stays as it is
+    Dice street = dice_.fork(0x57EE7);
+    if (is_fit) small_share_ = 0.25;
     const Look look = marked(ground_look(dice_));
     floor_like_ = look;
     ground(look, dice_.chance(0.5) ? 0 : draw(dice_, 0.002, 0.02),
@@ -970,9 +1043,17 @@ class Builder {
           block(from + Vec3{0, -0.15F, 0}, from + along + Vec3{0.15F, 0.15F, draw(dice_, 0.5, 2.2)},
                 wall_look(dice_));
           break;
-        case 3:
-          facade(from, along, draw(dice_, 3, 9));
+        case 3: {
+          const float height = draw(dice_, 3, 9);
+          if (is_fit && street.chance(0.35)) {
+            const float low = street.chance(0.5) ? draw(street, 2.3, 3) : height;
+            block(from + Vec3{0, -0.15F, 0}, from + along + Vec3{0.15F, 0.15F, low}, wall_look(street));
+            gates(from, along, low, street);
+          } else {
+            facade(from, along, height);
+          }
           break;
+        }
         default:
           break;  // open
       }
@@ -986,8 +1067,9 @@ class Builder {
       const float far_y = y > 0 ? 40.0F : -40.0F;
       block({-2, std::min(y, far_y), -0.3F}, {70, std::max(y, far_y), step}, ground_look(dice_)).is_ground =
           true;
-      kerb_ = {y, step};
+      if (is_fit && is_level_) world_.raised.push_back({{0, y}, {0, y > 0 ? 1.0F : -1.0F}, step});
     }
+    if (is_fit && is_level_ && street.chance(0.4)) kerb_ahead(street.fork(1));
     for (int k = dice_.below(7); k > 0; --k) {  // far trees are background
       Dice own = dice_.fork(0x7EE + static_cast<std::uint64_t>(k));
       const auto tree = std::ranges::find(families(), std::string_view("tree"), &Family::name);
@@ -1008,7 +1090,10 @@ class Builder {
     camera({0, draw(dice_, 0.3, 0.7) * left + 0.3F * right, eye}, draw(dice_, -0.25, 0.25),
            draw(dice_, -2, 6) + eye * draw(dice_, 2, 10), draw(dice_, 0.6, 1.9),
            kind == 2 ? draw(dice_, 0.2, 0.54) : static_cast<float>(dice_.log_uniform(0.07, 0.25)));
+    Vec3& at = world_.scene.rig.eye;
+    at.z += height_of_ground({at.x, at.y});
     nearest_ = 0.9F;
+    if (is_fit && street.chance(0.3)) parked_cars(left, right);
     Amount amount{dice_.chance(0.03) ? 0 : dice_.between(2, 9), 0, 0, 22, 0.15, 0.04, 0.12, 0.12};
     fill(0, amount);
   }
@@ -1047,7 +1132,8 @@ class Builder {
   bool may_show_photographs_ = false;
   float nearest_ = 0.3F;
   std::optional<Footprint> table_;
-  std::optional<std::pair<float, float>> kerb_;  // its y, and its height
+  bool is_level_ = true;       // the ground
+  double small_share_ = 0.06;  // of the things that would be smaller than most
 };
 
 Dice dice_of(const WorldOptions& options, int index) {

@@ -22,6 +22,13 @@ struct Thing {
   Vec3 centre;  // of the box around it
 };
 
+/// A higher part of the ground: all points on one side of a line.
+struct Raised {
+  Vec2 edge;
+  Vec2 inward;  // unit
+  float height_m = 0;
+};
+
 /// What to draw worlds of.
 struct WorldOptions {
   std::uint64_t seed = 1;
@@ -35,6 +42,7 @@ struct World {
   Scene scene;
   Sensor sensor;
   std::vector<Thing> things;
+  std::vector<Raised> raised;  // nothing in the yardstick
 };
 
 /// World number `index`: depends on the options and the index only.

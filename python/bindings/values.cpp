@@ -68,6 +68,7 @@ void bind_objects(py::module_& m) {
   shows(
       objects, "_list", [](const Objects& self) -> const auto& { return self.list; });
   value_class<RejectedObstacle>(m, "LeftOut");
+  value_class<GroundStep>(m, "GroundStep");
   auto scan = value_class<ObstacleScan>(m, "ObstacleScan");
   shows(scan, "ranges_m", [](const ObstacleScan& self) { return Numbers<float>{self.ranges_m}; });
   auto grid = value_class<ObstacleGrid>(m, "ObstacleGrid");

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <cairn/objects/ground_steps.hpp>
 #include <cairn/pipeline/segment.hpp>
 #include <cairn/regions/watershed.hpp>
 #include <cairn/scene/floor_frame.hpp>
@@ -52,6 +53,7 @@ CAIRN_MEMBERS(Object, id, box_px, pixel_count, disparity_px, valid_share, mean_c
 CAIRN_MEMBERS(Objects, labels, _all)
 CAIRN_MEMBERS(StereoResult, disparity_map, ground, floor, epipolar, confidence)
 CAIRN_MEMBERS(RejectedObstacle, reason, box_px, pixel_count, disparity_px, position_in_camera_m, confidence)
+CAIRN_MEMBERS(GroundStep, from_m, to_m, height_m)
 CAIRN_MEMBERS(ObstacleScan, angle_min_rad, angle_increment_rad, range_max_m, _ranges)
 CAIRN_MEMBERS(ObstacleGrid, cell_size_m, _width, _height, _origin_x, _origin_y, _cells)
 /// A frame has the members of its stereo result, too.

@@ -354,6 +354,14 @@ class LeftOut:
     confidence: float = doc("0 to 1: highest confidence of the regions that overlap it; 0 if none was judged")
 
 
+class GroundStep:
+    """A kerb, or another straight edge between two levels of the ground."""
+
+    from_m: Tuple[float, float, float] = doc("(x, y, z), m, in the floor frame: its right end on the nearer level")
+    to_m: Tuple[float, float, float] = doc("(x, y, z), m, in the floor frame: its left end")
+    height_m: float = doc("of the farther level above the nearer one; negative: a step down")
+
+
 class ObstacleScan:
     """The nearest obstacle in each direction, as from a laser scanner, seen from the floor below the left camera."""
 

@@ -88,8 +88,9 @@ def test_obstacles_are_reported_whether_objects_or_not(sample):
     seen = scan.ranges_m[np.isfinite(scan.ranges_m)]
     assert len(scan) == len(scan.ranges_m) and 1 < seen.min() < frame.objects[0].distance_m
     assert set(np.unique(grid.cells)) == {-1, 0, 100} and grid.cells.shape == (240, 120)
+    assert frame.steps() == []
     without = cairn.segment(sample.left, sample.right, match={"num_disparities": 32})
-    assert without.scan() is None and without.grid() is None and without.floor_frame is None
+    assert without.scan() is None and without.steps() is None and without.grid() is None and without.floor_frame is None
 
 
 def test_depth_and_points_are_arrays(sample):

@@ -94,21 +94,31 @@ DisparityMap combine(const Image<float>& refined_px, const std::vector<View<cons
 
 DisparityMap reject_below_ground(const DisparityMap& disparity, const GroundPlane& plane, float doffs_px,
                                  float margin) {
-  DisparityMap below = clone(disparity);
-  for (int y = 0; y < below.reject.height(); ++y) {
-    for (int x = 0; x < below.reject.width(); ++x) {
+  DisparityMap upright = clone(disparity);
+  DisparityMap level = clone(disparity);
+  for (int y = 0; y < upright.reject.height(); ++y) {
+    for (int x = 0; x < upright.reject.width(); ++x) {
+      const float d = disparity.disparity_px(x, y);
       const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y));
-      const bool is_below = floor + doffs_px > 0 && below.disparity_px(x, y) < floor - margin;
-      if (!is_below) reject(below, x, y, Reject::no_data);
+      const bool is_below = floor + doffs_px > 0 && d < floor - margin;
+      if (!is_below) reject(upright, x, y, Reject::no_data);
+      level.disparity_px(x, y) = d - floor;
+      // A point at the same pixel is 1 / (d + doffs) away.
+      if (!is_below || 2 * (d + doffs_px) <= floor + doffs_px) reject(level, x, y, Reject::no_data);
     }
   }
-  // A surface has at least 2 % of the pixels and 64, and steps of at most 0.2 px.
-  const int least = std::max(64, static_cast<int>(0.02 * static_cast<double>(below.reject.size().area())));
-  const DisparityMap surfaces = reject_speckles(below, {least - 1, 0.2F});
+  // A surface has at least 2 % of the pixels and 64, and small steps.
+  const int least = std::max(64, static_cast<int>(0.02 * static_cast<double>(upright.reject.size().area())));
+  const DisparityMap no_wall = reject_speckles(upright, {least - 1, 0.2F});
+  const DisparityMap no_ground = reject_speckles(level, {least - 1, 0.5F});
+  const auto is_surface = [](const DisparityMap& map, int x, int y) {
+    return !std::isnan(map.disparity_px(x, y));
+  };
   DisparityMap map = clone(disparity);
   for (int y = 0; y < map.reject.height(); ++y) {
     for (int x = 0; x < map.reject.width(); ++x) {
-      if (has(surfaces.reject(x, y), Reject::speckle)) reject(map, x, y, Reject::below_ground);
+      if (is_surface(upright, x, y) && !is_surface(no_wall, x, y) && !is_surface(no_ground, x, y))
+        reject(map, x, y, Reject::below_ground);
     }
   }
   return map;

@@ -128,6 +128,8 @@ TEST(ObjectsJson, ListsObstaclesAndWhyTheyAreNoObjects) {
   Provenance without_rig = some_provenance();
   without_rig.rig.reset();
   EXPECT_TRUE(Json::parse(objects_json(frame, without_rig)).at("obstacle_scan").is_null());
+  EXPECT_EQ(j.at("ground_steps"), Json::array());
+  EXPECT_TRUE(Json::parse(objects_json(frame, without_rig)).at("ground_steps").is_null());
   EXPECT_TRUE(Json::parse(objects_json(frame, without_rig)).at("floor_frame").is_null());
 }
 

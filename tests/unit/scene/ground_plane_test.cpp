@@ -567,6 +567,26 @@ TEST(BelowGround, RejectsTooRoughSurfaces) {
   EXPECT_EQ(below_ground(table_before_a_floor(40, 0.15F)), 40 * 160);
 }
 
+TEST(BelowGround, KeepsALevelSurfaceNearerThanTwiceTheFloor) {
+  // A road behind the edge of a pavement: a share of the floor's disparity, with steps of more than 0.2 px.
+  const auto steep = [](float share) {
+    const Size size{160, 120};
+    DisparityMap map{Image<float>(size), Image<Reject>(size, Reject::none, {})};
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x)
+        map.disparity_px(x, y) = (y < 40 ? share : 1) * (0.6F * static_cast<float>(y) + 9);
+    }
+    const Ground ground{GroundPlane{0, 0.6F, 9}, 1, 0, Refusal::none};
+    const DisparityMap judged = reject_below_ground(std::move(map), ground, {}, {}, {});
+    int count = 0;
+    for (int x = 0; x < size.width; ++x) count += has(judged.reject(x, 20), Reject::below_ground) ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(steep(0.85F), 0);
+  EXPECT_EQ(steep(0.55F), 0);
+  EXPECT_EQ(steep(0.45F), 160);
+}
+
 TEST(BelowGround, RejectsTooSmallSurfaces) {
   EXPECT_EQ(below_ground(table_before_a_floor(2, 0)), 2 * 160);  // of the 384 px that 2 % are
   EXPECT_EQ(below_ground(table_before_a_floor(3, 0)), 0);

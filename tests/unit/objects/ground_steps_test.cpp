@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 the cairn authors
+#include <gtest/gtest.h>
+
+#include <cairn/objects/ground_steps.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace cairn {
+namespace {
+
+constexpr Size kSize{320, 240};
+// 1 m above the floor, looking 30° down.
+constexpr StereoRig kRig{.focal_px = 280, .cx_px = 160, .cy_px = 120, .baseline_m = 0.2F, .doffs_px = 0};
+const float kSin = 0.5F, kCos = std::sqrt(0.75F);
+const FloorFrame kFrame{
+    .forward = {0, -kSin, kCos}, .left = {-1, 0, 0}, .up = {0, -kCos, -kSin}, .camera_height_m = 1};
+
+/// What the camera sees of a ground whose height, in m, depends on the place.
+struct Street {
+  Image<float> disparity_px{kSize};
+  Image<float> confidence{kSize, 0.9F, {}};
+  Image<ObjectId> objects{kSize, ObjectId::none, {}};
+
+  explicit Street(const std::function<float(float x, float y)>& height) {
+    for (int v = 0; v < kSize.height; ++v) {
+      for (int u = 0; u < kSize.width; ++u) disparity_px(u, v) = look(height, u, v);
+    }
+  }
+  static float look(const std::function<float(float x, float y)>& height, int u, int v) {
+    const Vec3 ray{(static_cast<float>(u) - kRig.cx_px) / kRig.focal_px,
+                   (static_cast<float>(v) - kRig.cy_px) / kRig.focal_px, 1};
+    const auto is_below = [&](float z) {
+      const Vec3 at = kFrame.to_floor({z * ray.x, z * ray.y, z});
+      return at.z <= height(at.x, at.y);
+    };
+    float z = 0.6F;
+    for (constexpr float kStep = 0.02F; z < 10 && !is_below(z); z += kStep) {
+      if (is_below(z + kStep)) {
+        float above = z, below = z + kStep;
+        for (int k = 0; k < 6; ++k) (is_below((above + below) / 2) ? below : above) = (above + below) / 2;
+        return kRig.focal_px * kRig.baseline_m / below;
+      }
+    }
+    return std::numeric_limits<float>::quiet_NaN();
+  }
+  [[nodiscard]] std::vector<GroundStep> steps(const StereoRig& rig = kRig) const {
+    return find_steps(objects, disparity_px, confidence, kFrame, rig, {});
+  }
+};
+
+TEST(GroundSteps, AKerbUpIsFoundWhereItIs) {
+  const auto steps = Street([](float x, float) { return x > 2 ? 0.12F : 0.0F; }).steps();
+  ASSERT_EQ(steps.size(), 1U);
+  EXPECT_NEAR(steps[0].height_m, 0.12, 0.01);
+  EXPECT_NEAR((steps[0].from_m.x + steps[0].to_m.x) / 2, 2, 0.15);
+  EXPECT_NEAR(steps[0].from_m.z, 0, 0.01);
+  EXPECT_GT(steps[0].to_m.y - steps[0].from_m.y, 1.5F) << "most of the 2 m in view";
+}
+
+TEST(GroundSteps, AKerbDownIsFoundBehindWhatItHides) {
+  const auto steps = Street([](float x, float y) { return x + 0.3F * y > 1.8F ? -0.15F : 0.0F; }).steps();
+  ASSERT_EQ(steps.size(), 1U);
+  EXPECT_NEAR(steps[0].height_m, -0.15, 0.01);
+  const Vec3 a = steps[0].from_m, b = steps[0].to_m;
+  EXPECT_NEAR((a.x + b.x) / 2 + 0.3 * (a.y + b.y) / 2, 1.8, 0.2);
+  EXPECT_NEAR(std::atan2(a.x - b.x, b.y - a.y), std::atan(0.3), 0.15);
+}
+
+TEST(GroundSteps, APavementHasTwo) {
+  const auto steps = Street([](float x, float) { return x > 1.6F && x < 2.8F ? 0.15F : 0.0F; }).steps();
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_NEAR(steps[0].height_m, 0.15, 0.01);
+  EXPECT_NEAR(steps[1].height_m, -0.15, 0.01);
+}
+
+TEST(GroundSteps, RampsAndUnevenGroundAreNone) {
+  EXPECT_TRUE(Street([](float, float) { return 0.0F; }).steps().empty());
+  EXPECT_TRUE(Street([](float x, float) { return x > 1.5F ? 0.15F * (x - 1.5F) : 0.0F; }).steps().empty());
+  EXPECT_TRUE(
+      Street([](float x, float y) { return 0.03F * std::sin(6 * x) * std::sin(5 * y); }).steps().empty());
+  EXPECT_TRUE(Street([](float x, float) { return x > 2 ? 0.05F : 0.0F; }).steps().empty()) << "too low";
+  EXPECT_TRUE(Street([](float x, float) { return x > 2 ? 0.5F : 0.0F; }).steps().empty()) << "a wall";
+  EXPECT_TRUE(
+      Street([](float x, float y) { return x > 2 && std::abs(y) < 0.2F ? 0.12F : 0.0F; }).steps().empty())
+      << "too narrow";
+}
+
+TEST(GroundSteps, ObjectsAndUnsureDisparitiesAreNotLookedAt) {
+  Street street([](float x, float) { return x > 2 ? 0.12F : 0.0F; });
+  ASSERT_FALSE(street.steps().empty());
+  for (int v = 0; v < kSize.height; ++v) {
+    for (int u = 0; u < kSize.width; ++u) {
+      if (street.disparity_px(u, v) < 25) street.confidence(u, v) = 0.4F;
+    }
+  }
+  EXPECT_TRUE(street.steps().empty());
+  Street box([](float x, float) { return x > 2 ? 0.12F : 0.0F; });
+  for (int v = 0; v < 110; ++v) std::fill_n(box.objects.row(v), kSize.width, ObjectId{1});
+  EXPECT_TRUE(box.steps().empty());
+}
+
+TEST(GroundSteps, WhatDisparitiesCannotTellApartIsNone) {
+  // A tenth of the baseline: the same scene, but a disparity's height is ten times less sure.
+  Street street([](float x, float) { return x > 2 ? 0.12F : 0.0F; });
+  StereoRig narrow = kRig;
+  narrow.baseline_m /= 10;
+  for (int v = 0; v < kSize.height; ++v) {
+    for (int u = 0; u < kSize.width; ++u) street.disparity_px(u, v) /= 10;
+  }
+  EXPECT_TRUE(street.steps(narrow).empty());
+}
+
+TEST(GroundSteps, NothingIsSeenInHoles) {
+  Street street([](float x, float) { return x > 2 ? 0.12F : 0.0F; });
+  for (int v = 0; v < kSize.height; ++v)
+    std::fill_n(street.disparity_px.row(v), kSize.width, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_TRUE(street.steps().empty());
+}
+
+}  // namespace
+}  // namespace cairn
