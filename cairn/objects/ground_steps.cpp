@@ -28,6 +28,7 @@ constexpr int kMixedCells = 3;       // across the step, between its levels
 constexpr float kSigmaPx = 0.3F;     // of a disparity
 constexpr float kSigmas = 4;
 constexpr float kTrusted = 0.5F;
+constexpr float kFarthest = 20;     // m
 constexpr std::size_t kEnough = 3;  // pixels of a cell
 
 /// A piece of ground, seen from above.
@@ -38,10 +39,14 @@ struct Cell {
   float sigma = 0;  // m, of the height by one disparity
 };
 
+int cells_along(float range_m) {
+  return static_cast<int>(std::clamp(range_m, kCell, kFarthest) / kCell);
+}
+
 std::vector<Cell> cells_of(View<const ObjectId> objects, View<const float> disparity_px,
                            View<const float> confidence, const FloorFrame& floor, const StereoRig& rig,
                            float range) {
-  const int length = std::clamp(static_cast<int>(range / kCell), 1, 1000);
+  const int length = cells_along(range);
   struct Seen {
     std::vector<float> heights;
     double disparity = 0;
@@ -217,7 +222,7 @@ std::vector<GroundStep> find_steps(View<const ObjectId> objects, View<const floa
                                    View<const float> confidence, const FloorFrame& floor,
                                    const StereoRig& rig, const ObstaclesConfig& config) {
   constexpr int kDirections = 13;  // of the way across the step: up to 60° to either side
-  const int length = std::clamp(static_cast<int>(config.range / kCell), 1, 1000);
+  const int length = cells_along(config.range);
   const auto angle_of = [](int direction) {
     return static_cast<float>(direction - kDirections / 2) * 10 * std::numbers::pi_v<float> / 180;
   };

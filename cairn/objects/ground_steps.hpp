@@ -19,7 +19,7 @@ struct GroundStep {
 /// Steps of at least 7.5 cm and at most 35 cm that are at least 1 m long, nearest first. Both levels must be visible:
 /// level within 2.5 cm for half a metre, without objects, and four standard deviations of a disparity's height apart,
 /// which limits the distance. `disparity_px`: of the matches, NaN = hole; `confidence`: theirs, only 0.5 and more counts;
-/// empty: all are trusted. Not farther than config.range.
+/// empty: all are trusted. Not farther than config.range and 20 m.
 std::vector<GroundStep> find_steps(View<const ObjectId> objects, View<const float> disparity_px,
                                    View<const float> confidence, const FloorFrame& floor,
                                    const StereoRig& rig, const ObstaclesConfig& config);
