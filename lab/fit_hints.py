@@ -5,7 +5,8 @@
 
 fit_hints.py gather TOOL STORE FRAMES...: the inputs of the network and the truth for folders of frames, in colour and
 in grey, into the folder STORE.
-fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--width W] [--worlds N] [--start FILE]: fits to such stores.
+fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--rate R] [--width W] [--worlds N] [--start FILE]: fits to
+such stores.
 fit_hints.py mean STORE... --start FILE --of FILE [--share S] [--work FOLDER] [--out FOLDER]: the mean of the weights of a network
 and of one that went on from it (Wortsman et al. 2022, "Robust fine-tuning"); STORE...: those of that fit.
 
@@ -17,6 +18,7 @@ finds one, and products of bfloat16 where they are fast; the weights then differ
 """
 import argparse
 import ctypes
+import hashlib
 import os
 import pathlib
 import time
@@ -439,7 +441,7 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
     optimizer = torch.optim.AdamW(net.parameters(), rate, weight_decay=DECAY)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, rate, total_steps=steps, pct_start=0.15)
     short = has_fast_bfloat16(device)
-    key = {"steps": steps, "rate": rate, "frames": len(frames), "start": str(start), "bfloat16": short,
+    key = {"steps": steps, "rate": rate, "frames": len(frames), "start": start and hashlib.sha256(start.read_bytes()).hexdigest(), "bfloat16": short,
            "shapes": [tuple(v.shape) for v in net.state_dict().values()]}
     parts = {"net": net, "mean": mean, "optimizer": optimizer, "schedule": schedule}
     first = 0

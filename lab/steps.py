@@ -4,8 +4,8 @@
 """Compares reported steps of the ground with the truth: steps.py FOLDER... (PYTHONPATH: the built module)
 
 FOLDER: worlds outdoors, for example of `./dev worlds frames 0 399 --seed 77 --outdoor 1`: their scene.json has the lines
-where the ground rises. A step counts where at least 1 m of its edge is in view. It could be known if its height is at
-least four standard deviations of that of one disparity, and both of its levels are seen for half a metre.
+where the ground rises. A step counts where at least 1 m of its edge is in view, and a ground was found. It could be known
+if its height is at least four standard deviations of that of one disparity.
 """
 import json
 import multiprocessing
@@ -56,14 +56,14 @@ def judged(folder):
     """(height, distance, could be known, heights reported there) of each true step; how many are reported elsewhere."""
     true = TrueFrame(folder)
     frame = true.segment(None)
-    steps = frame.steps()
+    steps = frame.ground_steps()
     scene = json.loads((folder / "scene.json").read_text())
     if steps is None or "raised" not in scene:
         return [], len(steps or [])
     floor = np.reshape(frame.floor_frame.floor_from_camera, (4, 4))
     edges = [Edge(part, np.loadtxt(folder / "pose.txt"), true, floor) for part in scene["raised"]]
-    rows = [(abs(edge.height), edge.distance, SIGMAS * edge.sigma <= abs(edge.height),
-             [abs(step.height_m) for step in steps if edge.is_at(step)])
+    rows = [(edge.height, edge.distance, SIGMAS * edge.sigma <= abs(edge.height),
+             [step.height_m for step in steps if edge.is_at(step) and step.height_m * edge.height > 0])
             for edge in edges if len(edge.places) >= 20]
     return rows, sum(not any(edge.is_at(step) for edge in edges) for step in steps)
 
@@ -72,7 +72,7 @@ def main():
     frames = [frame for folder in sys.argv[1:] for frame in frames_in(folder)]
     with multiprocessing.Pool(2) as pool:
         seen = pool.map(judged, frames, chunksize=4)
-    steps = [row for rows, _ in seen for row in rows if row[0] >= LEAST and row[1] < DISTANCES[-1]]
+    steps = [row for rows, _ in seen for row in rows if abs(row[0]) >= LEAST and row[1] < DISTANCES[-1]]
 
     def found(rows):
         return f"{sum(len(row[3]) > 0 for row in rows)} of {len(rows)}"
@@ -81,9 +81,10 @@ def main():
                 [[name, *(found([row for row in steps if low <= row[1] < high and row[2] >= known])
                           for low, high in zip(DISTANCES, DISTANCES[1:]))]
                  for name, known in (("steps of 8 cm and more", False), ("of these, those that could be known", True))]))
-    off = [height - row[0] for row in steps for height in row[3]]
-    print(f"{sum(others for _, others in seen)} reported elsewhere; heights, 10th, 50th and 90th percentile of the error: "
-          f"{np.round(100 * np.percentile(off, [10, 50, 90]), 1)} cm" if off else "none found")
+    print(f"{sum(others for _, others in seen)} reported elsewhere")
+    off = [100 * (height - row[0]) for row in steps for height in row[3]]
+    if off:
+        print(f"heights, 10th, 50th and 90th percentile of the error: {np.round(np.percentile(off, [10, 50, 90]), 1)} cm")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <array>
 #include <cairn/objects/ground_steps.hpp>
 #include <cmath>
 #include <cstddef>
@@ -28,6 +27,7 @@ constexpr int kMixedCells = 3;       // across the step, between its levels
 constexpr float kSigmaPx = 0.3F;     // of a disparity
 constexpr float kSigmas = 4;
 constexpr float kTrusted = 0.5F;
+constexpr float kFew = 0.3F;        // share of the cells; fewer are noise
 constexpr float kFarthest = 20;     // m
 constexpr std::size_t kEnough = 3;  // pixels of a cell
 
@@ -131,14 +131,17 @@ class Turned {
   [[nodiscard]] int lanes() const { return lanes_; }
 
   /// The step whose nearer level ends at the line `edge`, if there is one.
-  [[nodiscard]] std::optional<Candidate> step(int lane, int edge) const {
+  std::optional<Candidate> step(int lane, int edge) {
     const Stretch near = stretch(lane, kLanes, edge - kLevelCells, edge);
     if (!near.cells) return std::nullopt;
-    // Cells that show both levels, or an upright face, lie between them; behind a step down there is nothing.
+    // Cells that show both levels, or an upright face, lie between them; behind a step down there is hardly anything.
     std::size_t seen = 0;
     for (int gap = 1; gap <= kHiddenCells && edge + gap + kLevelCells <= length_; ++gap) {
-      if (gap > kMixedCells) seen += count(lane, kLanes, edge + gap - 2, edge + gap - 1);
-      if (static_cast<float>(seen) > 0.3F * kCellsAcross * static_cast<float>(gap)) return std::nullopt;
+      if (gap > kMixedCells) {
+        seen += count(lane, kLanes, edge + gap - 2, edge + gap - 1);
+        const auto hidden = static_cast<float>(gap - kMixedCells);
+        if (static_cast<float>(seen) > kFew * kCellsAcross * hidden) return std::nullopt;
+      }
       const Stretch far = stretch(lane, kLanes, edge + gap, edge + gap + kLevelCells);
       if (!far.cells) continue;
       const float height = far.height - near.height;
@@ -158,7 +161,7 @@ class Turned {
       if (agreeing < kLanes - 1) continue;
       // A step down is where the nearer level ends; the stretch may reach beyond that.
       int last = edge;
-      while (static_cast<float>(count(lane, kLanes, last - 1, last)) < 0.3F * kCellsAcross) --last;
+      while (static_cast<float>(count(lane, kLanes, last - 1, last)) < kFew * kCellsAcross) --last;
       const float end = static_cast<float>(last) + (height > 0 ? static_cast<float>(gap) / 2 : 0);
       return Candidate{0,      lane,        kCell * end,
                        height, near.height, std::abs(height) / (kSpread + near.off + far.off)};
@@ -181,32 +184,30 @@ class Turned {
     return all;
   }
   /// No cells if it is not level, or if less than half of it is seen.
-  [[nodiscard]] Stretch stretch(int lane, int lanes, int first, int last) const {
+  Stretch stretch(int lane, int lanes, int first, int last) {
     constexpr float kHalf = 0.5F * kLane / kCell * kLevelCells;
-    std::array<Turn, slot(kLanes * 3 * kLevelCells * 2)> given;
-    std::size_t n = 0;
-    for (int k = lane; k < lane + lanes; ++k) {
-      for (std::size_t i = begins_[at(k, first)]; i < begins_[at(k, last)] && n < given.size(); ++i)
-        given[n++] = turns_[i];
-    }
+    const std::size_t n = count(lane, lanes, first, last);
     if (static_cast<float>(n) < kHalf * static_cast<float>(lanes)) return {};
-    const auto middle = given.begin() + static_cast<std::ptrdiff_t>(n / 2);
-    std::nth_element(given.begin(), middle, given.begin() + static_cast<std::ptrdiff_t>(n),
-                     [](const Turn& a, const Turn& b) { return a.height < b.height; });
+    given_.clear();
+    for (int k = lane; k < lane + lanes; ++k) {
+      given_.insert(given_.end(), turns_.begin() + static_cast<std::ptrdiff_t>(begins_[at(k, first)]),
+                    turns_.begin() + static_cast<std::ptrdiff_t>(begins_[at(k, last)]));
+    }
+    const auto middle = given_.begin() + static_cast<std::ptrdiff_t>(n / 2);
+    std::ranges::nth_element(given_, middle, {}, &Turn::height);
     Stretch all{n, middle->height};
-    float level = 0;
-    float near_by = 0, u = 0, z = 0, uu = 0, uz = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      all.sigma += given[i].sigma / static_cast<float>(n);
-      const float off = given[i].height - all.height, at = given[i].u - static_cast<float>(first);
+    float level = 0, used = 0, u = 0, z = 0, uu = 0, uz = 0;
+    for (const Turn& turn : given_) {
+      all.sigma += turn.sigma / static_cast<float>(n);
+      const float off = turn.height - all.height, at = turn.u - static_cast<float>(first);
       all.off += std::min(std::abs(off), kMost) / static_cast<float>(n);
       level += std::abs(off) <= kFlat ? 1.0F : 0.0F;
       if (std::abs(off) > 2 * kFlat) continue;
-      near_by += 1, u += at, z += off, uu += at * at, uz += at * off;
+      used += 1, u += at, z += off, uu += at * at, uz += at * off;
     }
     if (level < kLevelShare * static_cast<float>(n)) return {};
-    const float spread = uu - u * u / near_by;
-    all.slope = spread > 0 ? (uz - u * z / near_by) / spread : 0;
+    const float spread = uu - u * u / used;
+    all.slope = spread > 0 ? (uz - u * z / used) / spread : 0;
     return all;
   }
 
@@ -214,6 +215,7 @@ class Turned {
   int lanes_;
   std::vector<std::size_t> begins_;
   std::vector<Turn> turns_;
+  std::vector<Turn> given_;  // to stretch()
 };
 
 }  // namespace
@@ -221,7 +223,7 @@ class Turned {
 std::vector<GroundStep> find_steps(View<const ObjectId> objects, View<const float> disparity_px,
                                    View<const float> confidence, const FloorFrame& floor,
                                    const StereoRig& rig, const ObstaclesConfig& config) {
-  constexpr int kDirections = 13;  // of the way across the step: up to 60° to either side
+  constexpr int kDirections = 19;  // of the way across the step: up to 90° to either side
   const int length = cells_along(config.range);
   const auto angle_of = [](int direction) {
     return static_cast<float>(direction - kDirections / 2) * 10 * std::numbers::pi_v<float> / 180;
@@ -230,7 +232,7 @@ std::vector<GroundStep> find_steps(View<const ObjectId> objects, View<const floa
   std::vector<Candidate> all;
   int lanes = 0;
   for (int direction = 0; direction < kDirections; ++direction) {
-    const Turned turned(cells, angle_of(direction), length);
+    Turned turned(cells, angle_of(direction), length);
     lanes = turned.lanes();
     for (int lane = 0; lane + kLanes <= lanes; ++lane) {
       for (int edge = kLevelCells; edge + 1 + kLevelCells <= length; ++edge) {

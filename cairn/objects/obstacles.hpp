@@ -19,14 +19,15 @@ enum class ObstacleLabel : std::uint8_t { unknown = 0, sky = 64, floor = 128, ob
 
 struct ObstaclesConfig {
   float max_height = 2.0F;  // m above the floor, 0.01 … 100; higher things do not obstruct
-  float range = 6.0F;       // m, 0.1 … 1000; of scan and grid
+  float range = 6.0F;       // m, 0.1 … 1000; of scan, grid and steps
   float cell_size = 0.05F;  // m, 0.005 … 10; of the grid
 };
 template <class V>
 void fields(ObstaclesConfig& c, V&& v) {
   v("max_height", c.max_height, "m", "largest height above the floor that can obstruct the robot",
     range(0.01F, 100.0F));
-  v("range", c.range, "m", "range of the obstacle scan and grid", range(0.1F, 1000.0F));
+  v("range", c.range, "m", "range of the obstacle scan and grid, and of steps of the ground",
+    range(0.1F, 1000.0F));
   v("cell_size", c.cell_size, "m", "cell size of the obstacle grid", range(0.005F, 10.0F));
 }
 

@@ -23,7 +23,7 @@ struct FloorRow {
 struct FloorKernels {
   /// The disparities of row `y` that are below the floor; NaN elsewhere.
   void (*find_below)(const FloorRow& floor, int y, int width, const float* disparity_px, float* below_px);
-  /// The same minus the floor's disparity, and NaN below twice the floor's distance, too.
+  /// The same minus the floor's disparity; NaN also where it is at least twice as far away as the floor.
   void (*find_little_below)(const FloorRow& floor, int y, int width, const float* disparity_px,
                             float* above_floor_px);
   /// Rejects the marked disparities of a row as below the ground, but for those of level surfaces (NaN elsewhere).

@@ -140,11 +140,11 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
     return reject_speckles(std::move(below), all_but_surfaces(size, widest_step_px), exec);
   };
   // What neither rule keeps is a mirror image or a wrong match; the rest is a surface beyond the floor's edge.
-  const DisparityMap upright = all_but(run.find_below, kWidestStep);
+  const DisparityMap smooth = all_but(run.find_below, kWidestStep);
   const DisparityMap level = all_but(run.find_little_below, kWidestLevelStep);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
-      run.reject_marked(upright.reject.row(y), level.disparity_px.row(y), size.width,
+      run.reject_marked(smooth.reject.row(y), level.disparity_px.row(y), size.width,
                         disparity.disparity_px.row(y), disparity.reject.row(y));
     }
   });

@@ -90,8 +90,7 @@ Ground likely_ground(const Ground& ground, const DisparityMap& disparity, const 
 
 /// Rejects matches below the floor, which are reflections: d < d_ground − margin → Reject::below_ground. A
 /// surface seen beyond the edge of the floor is kept: at least 2 % of the image, with steps of at most 0.2
-/// px if it is upright; of at most 0.5 px of d − d_ground if it is level, and nearer than twice the floor
-/// there. Only pixels below the horizon are checked (d_ground + doffs > 0 with a rig, else d_ground > 0).
+/// px; or nearer than twice the floor there, with steps of d − d_ground of at most 0.5 px. Only pixels below the horizon are checked (d_ground + doffs > 0 with a rig, else d_ground > 0).
 /// Without a ground, no effect. (docs/stages/ground.md; paper)
 DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
                                  const std::optional<StereoRig>& rig, const GroundConfig& config,

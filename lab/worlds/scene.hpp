@@ -17,7 +17,7 @@ inline constexpr std::array kPlaces{"room", "table", "shelf", "clutter", "corrid
 struct Thing {
   int id = 0;
   std::string kind;
-  std::string placed;  // free, wall, on, touch, edge, inside, bars
+  std::string placed;  // free, wall, on, touch, edge, shelf, row, inside, bars
   Vec3 size_m;
   Vec3 centre;  // of the box around it
 };

@@ -167,7 +167,7 @@ void bind_method(py::module_& m) {
   m.def("floor_of", [](const Frame& f, const output::Provenance& p) { return floor_frame(f.ground, p.rig); });
   m.def("scan", &from_floor<&scan_obstacles>);
   m.def("grid", &from_floor<&map_obstacles>);
-  m.def("steps", [](const Frame& frame, const FloorFrame& floor, const output::Provenance& how) {
+  m.def("ground_steps", [](const Frame& frame, const FloorFrame& floor, const output::Provenance& how) {
     return find_steps(frame.objects.labels, frame.disparity.disparity_px, frame.confidence, floor, *how.rig,
                       how.config.obstacles);
   });

@@ -359,7 +359,7 @@ class GroundStep:
 
     from_m: Tuple[float, float, float] = doc("(x, y, z), m, in the floor frame: its right end on the nearer level")
     to_m: Tuple[float, float, float] = doc("(x, y, z), m, in the floor frame: its left end")
-    height_m: float = doc("of the farther level above the nearer one; negative: a step down")
+    height_m: float = doc("height of the farther level above the nearer one, m; negative: a step down")
 
 
 class ObstacleScan:

@@ -50,6 +50,23 @@ def sample():
     return Sample(SOURCE / "data" / "samples" / "four_in_a_row")
 
 
+@pytest.fixture(scope="session")
+def kerb():
+    """A frame of a pavement 12 cm high, 2 m ahead of a camera 1 m above the road that looks 30 degrees down."""
+    focal, baseline, height, away = 280.0, 0.2, 0.12, 2.0
+    v, u = np.mgrid[:240, :320]
+    x, y = (u - 160) / focal, (v - 120) / focal
+    ahead, down = np.cos(np.pi / 6) - y * np.sin(np.pi / 6), y * np.cos(np.pi / 6) + np.sin(np.pi / 6)
+    with np.errstate(divide="ignore"):
+        road, top, face = 1 / down, (1 - height) / down, away / ahead
+    depth = np.where(road * ahead <= away, road, np.maximum(top, face))
+    disparity = np.where((down > 0) & (depth < 6), focal * baseline / depth, np.nan).astype(np.float32)
+    left = np.random.default_rng(1).integers(90, 110, (240, 320), dtype=np.uint8)
+    rig = cairn.Rig(focal_px=focal, cx_px=160, cy_px=120, baseline_m=baseline)
+    calibration = cairn.Calibration(rig, camera_height_m=1, camera_pitch_deg=30)
+    return cairn.segment(left, rig=calibration, disparity_map=disparity, preset="paper", ground={"source": "pose"})
+
+
 def same(a, b):
     """Equal bit for bit, holes included."""
     return (a is None and b is None) or (

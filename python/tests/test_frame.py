@@ -88,9 +88,18 @@ def test_obstacles_are_reported_whether_objects_or_not(sample):
     seen = scan.ranges_m[np.isfinite(scan.ranges_m)]
     assert len(scan) == len(scan.ranges_m) and 1 < seen.min() < frame.objects[0].distance_m
     assert set(np.unique(grid.cells)) == {-1, 0, 100} and grid.cells.shape == (240, 120)
-    assert frame.steps() == []
+    assert frame.ground_steps() == []
     without = cairn.segment(sample.left, sample.right, match={"num_disparities": 32})
-    assert without.scan() is None and without.steps() is None and without.grid() is None and without.floor_frame is None
+    assert without.scan() is None and without.ground_steps() is None and without.grid() is None and without.floor_frame is None
+
+
+def test_a_kerb_is_a_step_of_the_ground(kerb):
+    step, = kerb.ground_steps()
+    assert abs(step.height_m - 0.12) < 0.01 and repr(step).startswith("GroundStep(")
+    assert abs(step.from_m[0] - 2) < 0.15 and abs(step.to_m[0] - 2) < 0.15 and abs(step.from_m[2]) < 0.01
+    assert step.to_m[1] - step.from_m[1] > 1.5
+    written, = json.loads(kerb.to_json())["ground_steps"]
+    assert np.allclose([*written["from_m"], *written["to_m"], written["height_m"]], [*step.from_m, *step.to_m, step.height_m])
 
 
 def test_depth_and_points_are_arrays(sample):

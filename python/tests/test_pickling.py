@@ -65,7 +65,7 @@ def test_a_frame_without_colour_rig_and_matching_survives_pickling(sample):
 FLOOR = [(10, 200, 4, 200), (300, 210, 293, 210), (20, 230, 12, 230), (280, 190, 275, 190)]
 
 
-def one_of_each(sample):
+def one_of_each(sample, kerb):
     left, right = sample.left, sample.right
     # The next values keep state from frame to frame; their results can be pickled.
     step = cairn.Follower(sample.calibration).next(left, right, 0) if isinstance(cairn.Follower, type) else None
@@ -111,6 +111,7 @@ def one_of_each(sample):
         sample.frame.floor_frame,
         sample.frame.scan(),
         sample.frame.grid(),
+        kerb.ground_steps()[0],
         sample.frame.left_out[0],
         sample.frame.refined,
         sample.frame.objects[0].box_on_floor,
@@ -123,8 +124,8 @@ def one_of_each(sample):
     ]
 
 
-def test_every_class_can_be_pickled(sample):
-    values = one_of_each(sample)
+def test_every_class_can_be_pickled(sample, kerb):
+    values = one_of_each(sample, kerb)
     for value in values:
         back = pickle.loads(pickle.dumps(value))
         if not isinstance(value, (cairn.Exec, cairn.Segmenter)):  # whose buffers cannot be pickled

@@ -53,6 +53,22 @@ DisparityMap smooth_map(Size size, std::uint32_t seed) {
   return map;
 }
 
+/// Level ground below a plane, in stripes at two depths, with holes.
+DisparityMap level_map(Size size, const GroundPlane& plane, float doffs_px, std::uint32_t seed) {
+  const Image<int> noise = random_image<int>(size, 0, 19, seed);
+  DisparityMap map{Image<float>(size), Image<Reject>(size)};
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const bool hole = noise(x, y) == 19;
+      const float floor = plane.disparity_px(static_cast<float>(x), static_cast<float>(y)) + doffs_px;
+      const float rough = 0.02F * static_cast<float>(noise(x, y));
+      map.disparity_px(x, y) = hole ? kHole : (x % 40 < 25 ? 0.75F : 0.45F) * floor + rough - doffs_px;
+      map.reject(x, y) = hole ? Reject::left_right : Reject::none;
+    }
+  }
+  return map;
+}
+
 DisparityMap clone(const DisparityMap& map) {
   return {map.disparity_px.clone(), map.reject.clone()};
 }
@@ -147,10 +163,13 @@ TEST_P(ChecksEquivalence, Combine) {
 
 TEST_P(ChecksEquivalence, BelowGroundAndFloor) {
   for (const Size size : sizes()) {
-    for (const bool smooth : {false, true}) {
-      const DisparityMap map = smooth ? smooth_map(size, 19) : random_map(size, 19);
-      for (const float doffs : {0.0F, 3.0F}) {
-        const GroundPlane plane{0.05F, 0.3F, -2.0F};
+    for (const float doffs : {0.0F, 3.0F}) {
+      const GroundPlane plane{0.05F, 0.3F, -2.0F};
+      std::vector<DisparityMap> maps;
+      maps.push_back(random_map(size, 19));
+      maps.push_back(smooth_map(size, 19));
+      maps.push_back(level_map(size, plane, doffs, 19));
+      for (const DisparityMap& map : maps) {
         const Ground ground{plane, 1.0F, 0.0F, Refusal::none};
         const StereoRig rig{100, 10, 10, 0.1F, doffs};
         for (const float margin : {0.0F, 1.0F, 64.0F}) {
@@ -178,6 +197,15 @@ TEST_P(ChecksEquivalence, Speckle) {
       }
     }
   }
+}
+
+TEST(LevelMap, HasGroundThatOnlyTheRuleForLevelSurfacesKeeps) {
+  const GroundPlane plane{0.05F, 0.3F, -2.0F};
+  const DisparityMap map = level_map({130, 97}, plane, 3, 19);
+  const DisparityMap kept = reference::reject_below_ground(map, plane, 3, 1);
+  int count = 0;
+  for (int x = 0; x < 130; ++x) count += x % 40 < 25 && !std::isnan(kept.disparity_px(x, 90)) ? 1 : 0;
+  EXPECT_GT(count, 60);
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, ChecksEquivalence, testing::Values(1, 2, 3),

@@ -45,8 +45,8 @@ struct Street {
     }
     return std::numeric_limits<float>::quiet_NaN();
   }
-  [[nodiscard]] std::vector<GroundStep> steps(const StereoRig& rig = kRig) const {
-    return find_steps(objects, disparity_px, confidence, kFrame, rig, {});
+  [[nodiscard]] std::vector<GroundStep> steps(const StereoRig& rig = kRig, float range = 6) const {
+    return find_steps(objects, disparity_px, confidence, kFrame, rig, {.range = range});
   }
 };
 
@@ -73,6 +73,38 @@ TEST(GroundSteps, APavementHasTwo) {
   ASSERT_EQ(steps.size(), 2U);
   EXPECT_NEAR(steps[0].height_m, 0.15, 0.01);
   EXPECT_NEAR(steps[1].height_m, -0.15, 0.01);
+  EXPECT_NEAR(steps[0].from_m.z, 0, 0.01);
+  EXPECT_NEAR(steps[1].from_m.z, 0.15, 0.01);
+}
+
+TEST(GroundSteps, AKerbBesideTheWayIsOne) {
+  for (const float side : {-1.0F, 1.0F}) {
+    const auto steps = Street([&](float, float y) { return side * y > 0.7F ? 0.12F : 0.0F; }).steps();
+    ASSERT_EQ(steps.size(), 1U) << side;
+    EXPECT_NEAR(steps[0].height_m, 0.12, 0.01);
+    EXPECT_NEAR(steps[0].from_m.y, 0.7 * side, 0.2);
+    EXPECT_NEAR(steps[0].to_m.y, 0.7 * side, 0.2);
+  }
+}
+
+TEST(GroundSteps, OfStairsTheFirstIsReported) {
+  const auto steps = Street([](float x, float) { return x < 1.8F ? 0.0F : x < 2.4F ? 0.15F : 0.3F; }).steps();
+  ASSERT_EQ(steps.size(), 1U);
+  EXPECT_NEAR(steps[0].height_m, 0.15, 0.01);
+}
+
+TEST(GroundSteps, TheRangeAndTheInfinityOfTheRigCount) {
+  Street street([](float x, float) { return x > 2 ? 0.12F : 0.0F; });
+  street.confidence = {};  // all are trusted
+  for (const float range : {0.1F, 1.0F, 2.3F}) EXPECT_TRUE(street.steps(kRig, range).empty()) << range;
+  EXPECT_EQ(street.steps(kRig, 1000).size(), 1U);
+  StereoRig shifted = kRig;
+  shifted.doffs_px = 5;
+  for (int v = 0; v < kSize.height; ++v) {
+    for (int u = 0; u < kSize.width; ++u) street.disparity_px(u, v) -= 5;
+  }
+  ASSERT_EQ(street.steps(shifted).size(), 1U);
+  EXPECT_NEAR(street.steps(shifted)[0].height_m, 0.12, 0.01);
 }
 
 TEST(GroundSteps, RampsAndUnevenGroundAreNone) {
@@ -82,9 +114,10 @@ TEST(GroundSteps, RampsAndUnevenGroundAreNone) {
       Street([](float x, float y) { return 0.03F * std::sin(6 * x) * std::sin(5 * y); }).steps().empty());
   EXPECT_TRUE(Street([](float x, float) { return x > 2 ? 0.05F : 0.0F; }).steps().empty()) << "too low";
   EXPECT_TRUE(Street([](float x, float) { return x > 2 ? 0.5F : 0.0F; }).steps().empty()) << "a wall";
-  EXPECT_TRUE(
-      Street([](float x, float y) { return x > 2 && std::abs(y) < 0.2F ? 0.12F : 0.0F; }).steps().empty())
-      << "too narrow";
+  const auto block = [](float x, float y) {
+    return std::abs(x - 2.3F) < 0.3F && std::abs(y) < 0.3F ? 0.12F : 0.0F;
+  };
+  EXPECT_TRUE(Street(block).steps().empty());
 }
 
 TEST(GroundSteps, ObjectsAndUnsureDisparitiesAreNotLookedAt) {
