@@ -127,12 +127,17 @@ class Turned {
       turns_.push_back(turn);
     }
     for (std::size_t i = 1; i < begins_.size(); ++i) begins_[i] += begins_[i - 1];
+    levels_.resize(slot(lanes_) * slot(length));
+    for (int lane = 0; lane + kLanes <= lanes_; ++lane) {
+      for (int line = 0; line + kLevelCells <= length; ++line)
+        levels_[at(lane, line)] = stretch(lane, kLanes, line);
+    }
   }
   [[nodiscard]] int lanes() const { return lanes_; }
 
   /// The step whose nearer level ends at the line `edge`, if there is one.
   std::optional<Candidate> step(int lane, int edge) {
-    const Stretch near = stretch(lane, kLanes, edge - kLevelCells, edge);
+    const Stretch& near = levels_[at(lane, edge - kLevelCells)];
     if (!near.cells) return std::nullopt;
     // Cells that show both levels, or an upright face, lie between them; behind a step down there is hardly anything.
     std::size_t seen = 0;
@@ -142,7 +147,7 @@ class Turned {
         const auto hidden = static_cast<float>(gap - kMixedCells);
         if (static_cast<float>(seen) > kFew * kCellsAcross * hidden) return std::nullopt;
       }
-      const Stretch far = stretch(lane, kLanes, edge + gap, edge + gap + kLevelCells);
+      const Stretch& far = levels_[at(lane, edge + gap)];
       if (!far.cells) continue;
       const float height = far.height - near.height;
       if (gap > kMixedCells && height > 0) return std::nullopt;
@@ -154,8 +159,8 @@ class Turned {
         continue;
       int agreeing = 0;
       for (int k = lane; k < lane + kLanes; ++k) {
-        const Stretch before = stretch(k, 1, edge - kLevelCells, edge);
-        const Stretch after = stretch(k, 1, edge + gap, edge + gap + kLevelCells);
+        const Stretch before = stretch(k, 1, edge - kLevelCells);
+        const Stretch after = stretch(k, 1, edge + gap);
         agreeing += before.cells && after.cells && (after.height - before.height) / height > 0.6F ? 1 : 0;
       }
       if (agreeing < kLanes - 1) continue;
@@ -183,9 +188,10 @@ class Turned {
     for (int k = lane; k < lane + lanes; ++k) all += begins_[at(k, last)] - begins_[at(k, first)];
     return all;
   }
-  /// No cells if it is not level, or if less than half of it is seen.
-  Stretch stretch(int lane, int lanes, int first, int last) {
+  /// kLevelCells from line `first` on. No cells if it is not level, or if less than half of it is seen.
+  Stretch stretch(int lane, int lanes, int first) {
     constexpr float kHalf = 0.5F * kLane / kCell * kLevelCells;
+    const int last = first + kLevelCells;
     const std::size_t n = count(lane, lanes, first, last);
     if (static_cast<float>(n) < kHalf * static_cast<float>(lanes)) return {};
     given_.clear();
@@ -215,7 +221,8 @@ class Turned {
   int lanes_;
   std::vector<std::size_t> begins_;
   std::vector<Turn> turns_;
-  std::vector<Turn> given_;  // to stretch()
+  std::vector<Turn> given_;      // to stretch()
+  std::vector<Stretch> levels_;  // of kLanes from a lane on, from a line on
 };
 
 }  // namespace
@@ -223,10 +230,10 @@ class Turned {
 std::vector<GroundStep> find_steps(View<const ObjectId> objects, View<const float> disparity_px,
                                    View<const float> confidence, const FloorFrame& floor,
                                    const StereoRig& rig, const ObstaclesConfig& config) {
-  constexpr int kDirections = 19;  // of the way across the step: up to 90° to either side
+  constexpr int kDirections = 13;  // of the way across the step: up to 90° to either side
   const int length = cells_along(config.range);
   const auto angle_of = [](int direction) {
-    return static_cast<float>(direction - kDirections / 2) * 10 * std::numbers::pi_v<float> / 180;
+    return static_cast<float>(direction - kDirections / 2) * 15 * std::numbers::pi_v<float> / 180;
   };
   const std::vector<Cell> cells = cells_of(objects, disparity_px, confidence, floor, rig, config.range);
   std::vector<Candidate> all;
