@@ -154,9 +154,11 @@ class Turned {
       const float least = std::max(kLeast, kSigmas * (near.sigma + far.sigma) / 2);
       if (std::abs(height) < least || std::abs(height) > kMost) continue;
       if (std::min(std::abs(far.height), std::abs(near.height)) > kFloor) continue;
-      // A ramp rises within its stretches, too.
+      // A ramp rises within its stretches, too; so does a hump, whose farther side may be hidden.
       if (std::max(std::abs(near.slope), std::abs(far.slope)) * kLevelCells > 0.4F * std::abs(height))
         continue;
+      const float rise = (near.slope + far.slope) / 2 * static_cast<float>(kLevelCells + gap);
+      if ((height - rise) / height < 0.6F) continue;
       int agreeing = 0;
       for (int k = lane; k < lane + kLanes; ++k) {
         const Stretch before = stretch(k, 1, edge - kLevelCells);
