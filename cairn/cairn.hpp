@@ -44,7 +44,7 @@
 #include <cairn/objects/refine_objects.hpp>      // refine_objects
 #include <cairn/objects/floor_probability.hpp>       // floor_probability
 #include <cairn/objects/obstacles.hpp>               // label_obstacles
-#include <cairn/objects/ground_steps.hpp>            // find_steps
+#include <cairn/objects/ground_steps.hpp>            // GroundStep
 #include <cairn/objects/sky.hpp>                     // reject_sky
 #include <cairn/pipeline/config.hpp>             // Config, presets, options
 #include <cairn/pipeline/segment.hpp>            // segment: all of the above

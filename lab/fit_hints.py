@@ -558,6 +558,22 @@ def fit(arguments):
     write_all(net, frames, arguments)
 
 
+def count_anew(net, frames):
+    """What batch normalisation has seen, of the network as it is: means of weights give other activations than either
+    network (Izmailov et al. 2018, "Averaging Weights Leads to Wider Optima and Better Generalization")."""
+    import torch
+
+    for step in net.steps:
+        step[1].reset_running_stats()
+        step[1].momentum = None
+    sampler = Sampler(frames, 1)
+    net.to(memory_format=torch.channels_last).train()
+    with torch.no_grad(), torch.autocast("cpu", torch.bfloat16, enabled=has_fast_bfloat16(torch.device("cpu"))):
+        for batch in range(1, 1 + CALIBRATION // 5):
+            net(sampler.batch(batch)[0])
+    return net.eval()
+
+
 def mean(arguments):
     import torch
 
@@ -569,7 +585,7 @@ def mean(arguments):
     net.load_state_dict({key: torch.lerp(first[key], value, arguments.share) if value.dtype.is_floating_point else value
                          for key, value in second.items()})
     arguments.work.mkdir(parents=True, exist_ok=True)
-    write_all(net.eval(), frames, arguments)
+    write_all(count_anew(net, frames), frames, arguments)
 
 
 def write_all(net, frames, arguments):
@@ -601,7 +617,7 @@ def main():
             command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
         else:
             command.add_argument("--of", type=pathlib.Path, required=True, help="weights of a fit (.pt) that went on from it")
-            command.add_argument("--share", type=float, default=0.85, help="of the second one")
+            command.add_argument("--share", type=float, default=0.8, help="of the second one")
     arguments = parser.parse_args()
     if arguments.command == "fit":
         return fit(arguments)

@@ -185,7 +185,7 @@ def test_a_fit_goes_on_from_the_networks_integers(hints, tmp_path, width):
     again = hints.network(width)
     hints.of_library(again, tmp_path / "hints.bin", frames)
     again.eval()
-    data = frames.take(np.array([0, 1]))[0].float() / hints.UNIT
+    data = torch.stack([frames.take(number)[0] for number in (0, 1)]).float() / hints.UNIT
     with torch.no_grad():
         expected, found = net(data), again(data)
     assert (found - expected).abs().max() < 0.05 * expected.abs().max()  # but for the rounding
