@@ -235,7 +235,8 @@ std::vector<GroundStep> find_steps(View<const ObjectId> objects, View<const floa
   constexpr int kDirections = 13;  // of the way across the step: up to 90° to either side
   const int length = cells_along(config.range);
   const auto angle_of = [](int direction) {
-    return static_cast<float>(direction - kDirections / 2) * 15 * std::numbers::pi_v<float> / 180;
+    const int from_straight = direction - kDirections / 2;
+    return static_cast<float>(from_straight) * 15 * std::numbers::pi_v<float> / 180;
   };
   const std::vector<Cell> cells = cells_of(objects, disparity_px, confidence, floor, rig, config.range);
   std::vector<Candidate> all;
