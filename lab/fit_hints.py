@@ -441,7 +441,8 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
     optimizer = torch.optim.AdamW(net.parameters(), rate, weight_decay=DECAY)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, rate, total_steps=steps, pct_start=0.15)
     short = has_fast_bfloat16(device)
-    key = {"steps": steps, "rate": rate, "frames": len(frames), "start": start and hashlib.sha256(start.read_bytes()).hexdigest(), "bfloat16": short,
+    key = {"steps": steps, "rate": rate, "frames": len(frames), "bfloat16": short,
+           "start": start and hashlib.sha256(start.read_bytes()).hexdigest(),
            "shapes": [tuple(v.shape) for v in net.state_dict().values()]}
     parts = {"net": net, "mean": mean, "optimizer": optimizer, "schedule": schedule}
     first = 0

@@ -54,19 +54,19 @@ std::vector<Cell> cells_of(View<const ObjectId> objects, View<const float> dispa
   std::vector<Seen> seen(slot(length) * slot(2 * length));
   for (int y = 0; y < disparity_px.height(); ++y) {
     for (int x = 0; x < disparity_px.width(); ++x) {
-      const float d = disparity_px(x, y) + rig.doffs_px;
-      if (!(d > 0) || objects(x, y) != ObjectId::none) continue;
+      if (objects(x, y) != ObjectId::none) continue;
       if (!confidence.empty() && !(confidence(x, y) >= kTrusted)) continue;
-      const float depth = rig.focal_px * rig.baseline_m / d;
-      const Vec3 at = floor.to_floor({(static_cast<float>(x) - rig.cx_px) / rig.focal_px * depth,
-                                      (static_cast<float>(y) - rig.cy_px) / rig.focal_px * depth, depth});
+      const auto point =
+          rig.point_in_camera_m(static_cast<float>(x), static_cast<float>(y), disparity_px(x, y));
+      if (!point) continue;
+      const Vec3 at = floor.to_floor(*point);
       if (!(std::abs(at.z) <= kMost + kFloor) || !(at.x >= 0)) continue;
       const float column = std::floor(at.x / kCell),
                   row = std::floor(at.y / kCell) + static_cast<float>(length);
       if (column >= static_cast<float>(length) || row < 0 || row >= static_cast<float>(2 * length)) continue;
       Seen& of = seen[slot(static_cast<int>(row)) * slot(length) + slot(static_cast<int>(column))];
       of.heights.push_back(at.z);
-      of.disparity += double{d};
+      of.disparity += double{disparity_px(x, y) + rig.doffs_px};
     }
   }
   std::vector<Cell> cells;

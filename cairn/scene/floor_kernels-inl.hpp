@@ -6,27 +6,17 @@ namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
 inline void find_below(const FloorRow& given, int y, int width, const float* disparity_px,
-                       float* CAIRN_RESTRICT below_px) {
+                       float* CAIRN_RESTRICT below_px, float* CAIRN_RESTRICT little_below_px) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const FloorRow row = given;
   const GroundPlane p = row.plane;
   for (int x = 0; x < width; ++x) {
     const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
     const float d = disparity_px[x];
     const bool below = (floor + row.infinity > 0) & (d < floor - row.margin);
-    below_px[x] = below ? d : std::numeric_limits<float>::quiet_NaN();
-  }
-}
-
-inline void find_little_below(const FloorRow& given, int y, int width, const float* disparity_px,
-                              float* CAIRN_RESTRICT above_floor_px) {
-  const FloorRow row = given;
-  const GroundPlane p = row.plane;
-  for (int x = 0; x < width; ++x) {
-    const float floor = p.a * static_cast<float>(x) + p.b * static_cast<float>(y) + p.c;
-    const float d = disparity_px[x];
-    const bool below = (floor + row.infinity > 0) & (d < floor - row.margin) &
-                       (2 * (d + row.infinity) > floor + row.infinity);
-    above_floor_px[x] = below ? d - floor : std::numeric_limits<float>::quiet_NaN();
+    const bool little = below & (2 * (d + row.infinity) > floor + row.infinity);
+    below_px[x] = below ? d : kNan;
+    little_below_px[x] = little ? d - floor : kNan;
   }
 }
 
@@ -50,7 +40,7 @@ inline void label_floor(const FloorRow& given, int y, int width, const float* di
   }
 }
 
-inline constexpr FloorKernels kFloorKernels{find_below, find_little_below, reject_marked, label_floor};
+inline constexpr FloorKernels kFloorKernels{find_below, reject_marked, label_floor};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -21,11 +21,10 @@ struct FloorRow {
 /// Plain loops that compilers vectorise. Floating-point operations are rounded in the written order, so every
 /// target gets the same bits.
 struct FloorKernels {
-  /// The disparities of row `y` that are below the floor; NaN elsewhere.
-  void (*find_below)(const FloorRow& floor, int y, int width, const float* disparity_px, float* below_px);
-  /// The same minus the floor's disparity; NaN also where it is at least twice as far away as the floor.
-  void (*find_little_below)(const FloorRow& floor, int y, int width, const float* disparity_px,
-                            float* above_floor_px);
+  /// The disparities of row `y` that are below the floor; NaN elsewhere. The same minus the floor's disparity; NaN also
+  /// where it is at least twice as far away as the floor.
+  void (*find_below)(const FloorRow& floor, int y, int width, const float* disparity_px, float* below_px,
+                     float* little_below_px);
   /// Rejects the marked disparities of a row as below the ground, but for those of level surfaces (NaN elsewhere).
   void (*reject_marked)(const Reject* marks, const float* level_px, int width, float* disparity_px,
                         Reject* reject);

@@ -131,17 +131,20 @@ DisparityMap reject_below_ground(DisparityMap disparity, const Ground& ground,
   const Size size = disparity.disparity_px.size();
   const kernels::FloorKernels& run = kernels::floor_kernels(exec);
   const kernels::FloorRow floor = floor_row(ground, rig, config);
-  const auto all_but = [&](auto find, float widest_step_px) {
-    DisparityMap below{Image<float>(size, exec.pool), Image<Reject>(size, Reject::none, exec.pool)};
-    parallel_for(exec, size.height, 64, [&](int first, int last) {
-      for (int y = first; y < last; ++y)
-        find(floor, y, size.width, disparity.disparity_px.row(y), below.disparity_px.row(y));
-    });
-    return reject_speckles(std::move(below), all_but_surfaces(size, widest_step_px), exec);
+  const auto empty = [&] {
+    return DisparityMap{Image<float>(size, exec.pool), Image<Reject>(size, Reject::none, exec.pool)};
   };
+  DisparityMap below = empty(), little_below = empty();
+  parallel_for(exec, size.height, 64, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      run.find_below(floor, y, size.width, disparity.disparity_px.row(y), below.disparity_px.row(y),
+                     little_below.disparity_px.row(y));
+    }
+  });
   // What neither rule keeps is a mirror image or a wrong match; the rest is a surface beyond the floor's edge.
-  const DisparityMap smooth = all_but(run.find_below, kWidestStep);
-  const DisparityMap level = all_but(run.find_little_below, kWidestLevelStep);
+  const DisparityMap smooth = reject_speckles(std::move(below), all_but_surfaces(size, kWidestStep), exec);
+  const DisparityMap level =
+      reject_speckles(std::move(little_below), all_but_surfaces(size, kWidestLevelStep), exec);
   parallel_for(exec, size.height, 64, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       run.reject_marked(smooth.reject.row(y), level.disparity_px.row(y), size.width,

@@ -85,7 +85,8 @@ class Frame:
         return self.floor_frame and _cairn.grid(self._data, self.floor_frame, self._how)
 
     def ground_steps(self) -> Optional[List[GroundStep]]:
-        """Kerbs and other steps of the ground from 7.5 cm on: a list of GroundStep, nearest first. None without a rig or a ground."""
+        """Kerbs and other steps of the ground from 7.5 cm on: a list of GroundStep, nearest first. None without a rig or
+        a ground."""
         return self.floor_frame and _cairn.ground_steps(self._data, self.floor_frame, self._how)
 
     def depth_m(self) -> NDArray[numpy.float32]:
