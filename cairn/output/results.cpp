@@ -110,9 +110,7 @@ Json json(const RejectedObstacle& left) {
 Json scan_json(const Frame& frame, const Provenance& provenance) {
   const auto floor = floor_frame(frame.ground, provenance.rig);
   if (!floor) return nullptr;
-  const Image<float> disparity_px = obstacle_disparities(frame);
-  const ObstacleScan scan =
-      scan_obstacles(frame.space, disparity_px, *floor, *provenance.rig, provenance.config.obstacles);
+  const ObstacleScan scan = scan_obstacles(frame, *floor, *provenance.rig, provenance.config.obstacles);
   Json ranges = Json::array();
   for (const float range : scan.ranges_m) ranges.push_back(json(range));
   return {{"angle_min_rad", json(scan.angle_min_rad)},
@@ -126,9 +124,7 @@ Json steps_json(const Frame& frame, const Provenance& provenance) {
   const auto floor = floor_frame(frame.ground, provenance.rig);
   if (!floor) return nullptr;
   Json all = Json::array();
-  for (const GroundStep& step :
-       find_steps(frame.objects.labels, frame.disparity.disparity_px, frame.confidence, *floor,
-                  *provenance.rig, provenance.config.obstacles)) {
+  for (const GroundStep& step : find_steps(frame, *floor, *provenance.rig, provenance.config.obstacles)) {
     all.push_back(
         {{"from_m", json(step.from_m)}, {"to_m", json(step.to_m)}, {"height_m", json(step.height_m)}});
   }
@@ -332,9 +328,8 @@ bool wants_grid(const Result& r) {
 }
 
 ObstacleGrid grid_of(const Result& r) {
-  const Image<float> disparity_px = obstacle_disparities(r.frame);
-  return map_obstacles(r.frame.space, disparity_px, *floor_frame(r.frame.ground, r.provenance.rig),
-                       *r.provenance.rig, r.provenance.config.obstacles);
+  return map_obstacles(r.frame, *floor_frame(r.frame.ground, r.provenance.rig), *r.provenance.rig,
+                       r.provenance.config.obstacles);
 }
 
 /// In the format of ROS map_server: the row with the greatest y first.

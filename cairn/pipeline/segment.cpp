@@ -23,6 +23,25 @@ Image<float> obstacle_disparities(const Frame& frame) {
                               {});
 }
 
+ObstacleScan scan_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
+                            const ObstaclesConfig& config) {
+  const Image<float> disparity_px = obstacle_disparities(frame);
+  return scan_obstacles(frame.space, disparity_px, floor, rig, config);
+}
+
+std::vector<GroundStep> find_steps(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
+                                   const ObstaclesConfig& config) {
+  return find_steps(frame.objects.labels, frame.disparity.disparity_px, frame.confidence, floor, rig, config);
+}
+
+ObstacleGrid map_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
+                           const ObstaclesConfig& config) {
+  const Image<float> disparity_px = obstacle_disparities(frame);
+  ObstacleGrid grid = map_obstacles(frame.space, disparity_px, floor, rig, config);
+  add_steps(grid, find_steps(frame, floor, rig, config));
+  return grid;
+}
+
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {
   // Rounded up, so that an area of exactly min_area per cent suffices.
   const double least = std::ceil(static_cast<double>(image.area()) * double{config.min_area} / 100);

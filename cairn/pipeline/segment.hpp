@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cairn/objects/fuse.hpp>
+#include <cairn/objects/ground_steps.hpp>
 #include <cairn/objects/obstacles.hpp>
 #include <cairn/pipeline/input.hpp>
 #include <cairn/regions/choose_objects.hpp>
@@ -40,6 +41,13 @@ struct Frame : StereoResult {
 
 /// obstacle_disparities() of a frame.
 Image<float> obstacle_disparities(const Frame& frame);
+/// scan_obstacles(), find_steps() and map_obstacles() of a frame; in the grid, the cells along steps are occupied.
+ObstacleScan scan_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
+                            const ObstaclesConfig& config);
+std::vector<GroundStep> find_steps(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
+                                   const ObstaclesConfig& config);
+ObstacleGrid map_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
+                           const ObstaclesConfig& config);
 
 /// The limits of an object in an image of this size, for choose_objects().
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image);

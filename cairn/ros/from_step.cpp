@@ -393,8 +393,7 @@ std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,
                                      const std::optional<StereoRig>& rig, const ObstaclesConfig& config) {
   const auto floor = floor_frame(frame.ground, rig);
   if (!floor || frame.space.empty()) return std::nullopt;
-  const cairn::Image<float> disparity_px = obstacle_disparities(frame);
-  ObstacleGrid grid = map_obstacles(frame.space, disparity_px, *floor, *rig, config);
+  ObstacleGrid grid = map_obstacles(frame, *floor, *rig, config);
   OccupancyGrid message;
   message.header = header;
   message.info.map_load_time = header.stamp;

@@ -74,6 +74,7 @@ class Costs {
       const bool is_same_mask = overlap >= kSameMask;
       if (found.d2 > double{config_.gate} && !is_same_mask) return CostTable::kForbidden;
       cost += std::min(found.d2, double{config_.gate}) + found.log_widening +
+              (1 - double{overlap}) * found.log_vagueness +
               kSizeWeight * std::log(ratio(track.extent_m, seen.extent_m));
     } else if (common == 0) {
       return CostTable::kForbidden;

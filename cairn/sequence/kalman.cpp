@@ -3,11 +3,14 @@
 #include <cairn/sequence/kalman.hpp>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace cairn {
 namespace {
+
+constexpr double kSharp_m = 0.15;  // a standard deviation
 
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
@@ -68,6 +71,7 @@ Innovation innovation(Point3 expected_m, const Covariance3& expected_m2, Point3 
   found.d2 = off.dot(sum.llt().solve(off));
   const double volume = sum.determinant();
   found.log_widening = std::log(volume / measured.determinant());
+  found.log_vagueness = std::max(0.0, std::log(measured.determinant()) - 6 * std::log(kSharp_m));
   found.log_likelihood = -(found.d2 + std::log(volume) + 3 * std::log(2 * std::numbers::pi)) / 2;
   return found;
 }

@@ -17,6 +17,7 @@ Filter6 predicted(const Filter6& filter, double dt_s, double acceleration_noise)
 struct Innovation {
   double d2 = 0;              // Mahalanobis distance, squared
   double log_widening = 0;    // ln(|expected + measured| / |measured|) ≥ 0
+  double log_vagueness = 0;   // ln(|measured| / |(0.15 m)²·I|), at least 0
   double log_likelihood = 0;  // of the position, natural logarithm
 };
 Innovation innovation(Point3 expected_m, const Covariance3& expected_m2, Point3 measured_m,

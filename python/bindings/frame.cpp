@@ -101,11 +101,14 @@ thread_local std::vector<output::StageTime>* PySegmenter::times_ = nullptr;
 
 // ---- metric results ----
 
-/// A scan or grid of what is seen from the floor.
-template <auto make>
-auto from_floor(const Frame& frame, const FloorFrame& floor, const output::Provenance& how) {
-  const Image<float> disparity_px = obstacle_disparities(frame);
-  return make(frame.space, disparity_px, floor, *how.rig, how.config.obstacles);
+/// A scan, grid or steps of what is seen from the floor.
+template <class T>
+using FromFloor = T (*)(const Frame&, const FloorFrame&, const StereoRig&, const ObstaclesConfig&);
+template <class T>
+auto from_floor(FromFloor<T> make) {
+  return [make](const Frame& frame, const FloorFrame& floor, const output::Provenance& how) {
+    return make(frame, floor, *how.rig, how.config.obstacles);
+  };
 }
 
 Numbers<float> numbers_of(const std::vector<Vec3>& points, std::vector<py::ssize_t> shape) {
@@ -165,12 +168,9 @@ void bind_method(py::module_& m) {
       .def_property_readonly("exec", &PySegmenter::exec);
 
   m.def("floor_of", [](const Frame& f, const output::Provenance& p) { return floor_frame(f.ground, p.rig); });
-  m.def("scan", &from_floor<&scan_obstacles>);
-  m.def("grid", &from_floor<&map_obstacles>);
-  m.def("ground_steps", [](const Frame& frame, const FloorFrame& floor, const output::Provenance& how) {
-    return find_steps(frame.objects.labels, frame.disparity.disparity_px, frame.confidence, floor, *how.rig,
-                      how.config.obstacles);
-  });
+  m.def("scan", from_floor<ObstacleScan>(&scan_obstacles));
+  m.def("grid", from_floor<ObstacleGrid>(&map_obstacles));
+  m.def("ground_steps", from_floor<std::vector<GroundStep>>(&find_steps));
   m.def("points_of_pixels", &points_of_pixels, Released());
   m.def("points_of_object", &points_of_object, Released());
   m.def("to_json", &output::objects_json, Released());

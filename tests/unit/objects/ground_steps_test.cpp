@@ -120,6 +120,28 @@ TEST(GroundSteps, RampsAndUnevenGroundAreNone) {
   EXPECT_TRUE(Street(block).steps().empty());
 }
 
+TEST(GroundSteps, TheGridHasThemAsOccupied) {
+  ObstacleGrid grid{
+      .cell_size_m = 0.1F, .width = 20, .height = 40, .origin_x_m = 0, .origin_y_m = -2, .cells = {}};
+  grid.cells.assign(20U * 40U, ObstacleGrid::kFree);
+  // From the middle of cell (15, 20) to that of cell (18, 25), and one that leaves the grid at its far end.
+  add_steps(grid, {{.from_m = {1.55F, 0.05F, 0}, .to_m = {1.85F, 0.55F, 0}, .height_m = 0.1F},
+                   {.from_m = {1.75F, -0.95F, 0}, .to_m = {9, -0.95F, 0}, .height_m = -0.1F}});
+  const auto occupied = [&](int column, int row) {
+    return grid.cells[static_cast<std::size_t>(20 * row + column)] == ObstacleGrid::kOccupied;
+  };
+  EXPECT_TRUE(occupied(15, 20));
+  EXPECT_TRUE(occupied(18, 25));
+  for (int row = 0; row < 40; ++row) {
+    int count = 0;
+    for (int column = 0; column < 20; ++column) count += occupied(column, row) ? 1 : 0;
+    const bool is_crossed = row >= 20 && row <= 25;
+    EXPECT_GE(count, is_crossed ? 1 : row == 10 ? 3 : 0) << row;
+    EXPECT_LE(count, is_crossed ? 2 : row == 10 ? 3 : 0) << row;
+  }
+  EXPECT_TRUE(occupied(17, 10));
+}
+
 TEST(GroundSteps, ObjectsAndUnsureDisparitiesAreNotLookedAt) {
   Street street([](float x, float) { return x > 2 ? 0.12F : 0.0F; });
   ASSERT_FALSE(street.steps().empty());

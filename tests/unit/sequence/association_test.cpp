@@ -169,6 +169,19 @@ TEST(Associate, NoTrackGetsAnObjectBeyondTheGate) {
   EXPECT_TRUE(associated(tracks, {sighting_at(1, {0.5, 0, 2})}, no_overlaps(tracks, 1)).empty());
 }
 
+TEST(Associate, AnObjectThatMayBeAnywhereNeedsMoreThanItsPlace) {
+  // A bollard has left the view; a car far behind, whose place is uncertain by 2.5 m, is seen for the first time.
+  const Tracks tracks{{track_at(1, {0, 0, 2})}, 2, {}};
+  Detection car = sighting_at(1, {0, 0, 6});
+  car.covariance_in_camera_m2 = variances(6.25);
+  car.look = {};
+  car.look[0] = car.look[9] = 1;  // as light, of another colour
+  Overlaps overlaps = no_overlaps(tracks, 1);
+  EXPECT_TRUE(associated(tracks, {car}, overlaps).empty());
+  common(overlaps, 0, 1) = 90;
+  EXPECT_EQ(pairs(associated(tracks, {car}, overlaps)), (Pairs{{1, 1}})) << "but the same mask is enough";
+}
+
 TEST(Associate, AStableMaskKeepsItsTrackThoughItsCentroidJumps) {
   const Tracks tracks{{track_at(1, {0, 0, 2})}, 2, {}};
   Overlaps overlaps = no_overlaps(tracks, 1);
