@@ -7,8 +7,6 @@ fit_hints.py gather TOOL STORE FRAMES...: the inputs of the network and the trut
 in grey, into the folder STORE.
 fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--rate R] [--width W] [--worlds N] [--start FILE]: fits to
 such stores.
-fit_hints.py mean STORE... --start FILE --of FILE [--share S] [--work FOLDER] [--out FOLDER]: the mean of the weights of a network
-and of one that went on from it (Wortsman et al. 2022, "Robust fine-tuning"); STORE...: those of that fit.
 
 For each cell of 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
 and the centre and size of its object. It is then quantised: weights to 8 bits per output channel, activations to
@@ -29,17 +27,19 @@ import numpy as np
 from fit import SEED, frames_in, run_tool
 
 BATCH = 24  # half of it in colour, half in grey
-RATE, DECAY = 3e-3, 2e-3
+RATE = 0.02  # by which filters turn in a step, at most: see orthogonal_steps()
+RATE_OF_OTHERS, DECAY = 3e-3, 2e-3  # of what is no filter: at most, and three tenths of the filters' rate
+WARM_UP = 0.1  # share of the steps
 CLOSE_UPS = 0.3  # share of the samples that simulate a narrower field of view
 PASTES = 0.35  # chance, taken twice, that an object of another frame is pasted
 CALM = 0.2  # share of the steps, the last ones, without close-ups and pastes
 WIDTH, HEIGHT = 160, 120  # cells of a frame
 CHANNELS = 12
-FIRST, SECOND, THIRD, LAST = 32, 64, 96, 48  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
+FIRST, SECOND, THIRD, LAST = 32, 64, 112, 48  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
 SHARED_ROOT = 24  # root of the size, in cells, of an object whose cells count as much as the background's
 UNIT = 64  # scale of the input
 DONT_CARE = 255
-GREATEST = 4800  # activation: kMaxActivation
+GREATEST = 4096  # activation: kMaxActivation
 # Outputs: log-odds of an object and of an outline, quantised to 1/16; offset to the centre in units of 16 cells,
 # quantised to 1/8 cell; log₂ of the size, quantised to 1/16.
 STEPS_PER_UNIT = [16, 16, 128, 128, 16]
@@ -113,10 +113,10 @@ class Frames:
 class Sampler:
     """Batches of frames that are mirrored, scaled, shifted, brightened, without a floor …"""
 
-    def __init__(self, frames, steps):
+    def __init__(self, frames, steps, seed=SEED):
         import torch
 
-        self.frames, self.first_calm = frames, round((1 - CALM) * steps)
+        self.frames, self.first_calm, self.seed = frames, round((1 - CALM) * steps), seed
         self.down = torch.arange(HEIGHT, device=frames.device, dtype=torch.float32)[:, None]
         self.across = torch.arange(WIDTH, device=frames.device, dtype=torch.float32)[None]
 
@@ -124,7 +124,7 @@ class Sampler:
         """Every frame comes once in a round."""
         half, count = BATCH // 2, len(self.frames)
         at = np.arange(step * half, (step + 1) * half)
-        order = {r: np.random.RandomState([SEED, r]).permutation(count) for r in np.unique(at // count)}
+        order = {r: np.random.RandomState([self.seed, r]).permutation(count) for r in np.unique(at // count)}
         scenes = np.array([order[i // count][i % count] for i in at])
         return np.concatenate([2 * scenes, 2 * np.roll(scenes, half // 2) + 1])
 
@@ -132,7 +132,7 @@ class Sampler:
         """Inputs and targets."""
         import torch
 
-        random = torch.Generator(self.frames.device).manual_seed(1000003 * SEED + step)
+        random = torch.Generator(self.frames.device).manual_seed(1000003 * self.seed + step)
 
         def uniform(low, high, shape=(BATCH, 1, 1)):
             return low + (high - low) * torch.rand(*shape, generator=random, device=self.frames.device)
@@ -423,6 +423,38 @@ def has_fast_bfloat16(device):
     return processor.exists() and "amx_bf16" in processor.read_text()
 
 
+def orthogonal(matrix):
+    """Nearly U·Vᵀ of the singular value decomposition U·S·Vᵀ: five Newton-Schulz steps (Jordan et al. 2024, "Muon: An
+    optimizer for hidden layers in neural networks")."""
+    out = (matrix / (matrix.norm() + 1e-7)).bfloat16()
+    is_tall = out.shape[0] > out.shape[1]
+    out = out.T if is_tall else out
+    for _ in range(5):
+        square = out @ out.T
+        out = 3.4445 * out + (-4.7750 * square + 2.0315 * square @ square) @ out
+    return (out.T if is_tall else out).float()
+
+
+def orthogonal_steps(filters, rate):
+    """An optimizer of the filters of convolutions before batch normalisation, whose length means nothing: every step
+    turns all of a layer's filters by the same share of their length, in the mean, along the nearest orthogonal matrix
+    to the momentum of the gradient (source: see orthogonal())."""
+    import torch
+
+    class Orthogonal(torch.optim.Optimizer):
+        @torch.no_grad()
+        def step(self):
+            for group in self.param_groups:
+                for weight in group["params"]:
+                    momentum = self.state[weight].setdefault("momentum", torch.zeros_like(weight))
+                    momentum.mul_(0.95).add_(weight.grad)
+                    ahead = (weight.grad + 0.95 * momentum).flatten(1)
+                    weight.mul_(len(weight) ** 0.5 / weight.norm())
+                    weight.sub_(orthogonal(ahead).view(weight.shape), alpha=group["lr"])
+
+    return Orthogonal(filters, {"lr": rate})
+
+
 def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
     """A network fitted to the frames; its weights are an exponential average over the last steps."""
     import torch
@@ -437,14 +469,20 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
         net.load_state_dict(torch.load(start, map_location=device))
     mean.load_state_dict(net.state_dict())
     kept, new = ([v for v in one.state_dict().values() if v.dtype.is_floating_point] for one in (mean, net))
-    sampler = Sampler(frames, steps)
-    optimizer = torch.optim.AdamW(net.parameters(), rate, weight_decay=DECAY)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, rate, total_steps=steps, pct_start=0.15)
+    digest = start and hashlib.sha256(start.read_bytes()).hexdigest()
+    # A fit that goes on does not see again what the one before it saw.
+    sampler = Sampler(frames, steps, int(digest[:6], 16) if digest else SEED)
+    filters = [step[0].weight for step in net.steps]
+    others = [p for p in net.parameters() if all(p is not f for f in filters)]
+    optimizers = [orthogonal_steps(filters, rate),
+                  torch.optim.AdamW(others, min(RATE_OF_OTHERS, 0.3 * rate), weight_decay=DECAY)]
+    schedules = [torch.optim.lr_scheduler.LambdaLR(
+        o, lambda step: min((step + 1) / (WARM_UP * steps), (1 - step / steps) / (1 - WARM_UP))) for o in optimizers]
     short = has_fast_bfloat16(device)
-    key = {"steps": steps, "rate": rate, "frames": len(frames), "bfloat16": short,
-           "start": start and hashlib.sha256(start.read_bytes()).hexdigest(),
+    key = {"steps": steps, "rate": rate, "frames": len(frames), "bfloat16": short, "start": digest,
            "shapes": [tuple(v.shape) for v in net.state_dict().values()]}
-    parts = {"net": net, "mean": mean, "optimizer": optimizer, "schedule": schedule}
+    parts = {"net": net, "mean": mean} | {f"optimizer{i}": o for i, o in enumerate(optimizers)} \
+        | {f"schedule{i}": s for i, s in enumerate(schedules)}
     first = 0
     if checkpoint.exists():
         state = torch.load(checkpoint, map_location=device)
@@ -460,11 +498,11 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
         with torch.autocast(device.type, torch.bfloat16, enabled=short):
             output = net(data)
         loss = loss_of(output, truth, sampler.down, sampler.across)
-        optimizer.zero_grad()
+        net.zero_grad()
         loss.sum().backward()
         torch.nn.utils.clip_grad_norm_(net.parameters(), 5.0)
-        optimizer.step()
-        schedule.step()
+        for part in (*optimizers, *schedules):
+            part.step()
         losses += (loss.detach() - losses) * (0.02 if step > first else 1)
         with torch.no_grad():
             torch._foreach_mul_(kept, 0.99)
@@ -556,40 +594,6 @@ def fit(arguments):
     net = fitted(frames, arguments.steps, arguments.width, arguments.work / f"{arguments.name}.checkpoint",
                  arguments.start, arguments.rate)
     torch.save(net.state_dict(), arguments.work / f"{arguments.name}.pt")
-    write_all(net, frames, arguments)
-
-
-def count_anew(net, frames):
-    """What batch normalisation has seen, of the network as it is: means of weights give other activations than either
-    network (Izmailov et al. 2018, "Averaging Weights Leads to Wider Optima and Better Generalization")."""
-    import torch
-
-    for step in net.steps:
-        step[1].reset_running_stats()
-        step[1].momentum = None
-    sampler = Sampler(frames, 1)
-    net.to(memory_format=torch.channels_last).train()
-    with torch.no_grad(), torch.autocast("cpu", torch.bfloat16, enabled=has_fast_bfloat16(torch.device("cpu"))):
-        for batch in range(1, 1 + CALIBRATION // 5):
-            net(sampler.batch(batch)[0])
-    return net.eval()
-
-
-def mean(arguments):
-    import torch
-
-    frames = Frames(arguments.stores, 10**9, torch.device("cpu"))
-    torch.manual_seed(SEED)  # the further channels of a wider network as the fit began with them
-    net = network(arguments.width)
-    of_library(net, arguments.start, frames)
-    first, second = net.state_dict(), torch.load(arguments.of, map_location="cpu")
-    net.load_state_dict({key: torch.lerp(first[key], value, arguments.share) if value.dtype.is_floating_point else value
-                         for key, value in second.items()})
-    arguments.work.mkdir(parents=True, exist_ok=True)
-    write_all(count_anew(net, frames), frames, arguments)
-
-
-def write_all(net, frames, arguments):
     layers = rounded(net, frames)
     write(layers, arguments.work / arguments.name)
     if arguments.out:
@@ -603,27 +607,20 @@ def main():
     command.add_argument("tool", type=pathlib.Path)
     command.add_argument("store", type=pathlib.Path)
     command.add_argument("folders", type=pathlib.Path, nargs="+", help="folders of frames")
-    for name in ("fit", "mean"):
-        command = commands.add_parser(name)
-        command.add_argument("stores", type=pathlib.Path, nargs="+")
-        command.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
-        command.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
-        command.add_argument("--width", type=float, default=1.0, help="of all layers")
-        command.add_argument("--name", default="hints", help="of the file in the work folder")
-        command.add_argument("--start", type=pathlib.Path, required=name == "mean",
-                             help="weights of an earlier fit (.pt) or of the library (hints.bin); a fit goes on from it")
-        if name == "fit":
-            command.add_argument("--steps", type=int, default=22000)
-            command.add_argument("--rate", type=float, default=RATE, help="of learning, at most; less where a fit goes on")
-            command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
-        else:
-            command.add_argument("--of", type=pathlib.Path, required=True, help="weights of a fit (.pt) that went on from it")
-            command.add_argument("--share", type=float, default=0.8, help="of the second one")
+    command = commands.add_parser("fit")
+    command.add_argument("stores", type=pathlib.Path, nargs="+")
+    command.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
+    command.add_argument("--out", type=pathlib.Path, help="where the fitted numbers are written (cairn/fitted)")
+    command.add_argument("--width", type=float, default=1.0, help="of all layers")
+    command.add_argument("--name", default="hints", help="of the file in the work folder")
+    command.add_argument("--start", type=pathlib.Path,
+                         help="weights of an earlier fit (.pt) or of the library (hints.bin); the fit goes on from it")
+    command.add_argument("--steps", type=int, default=22000)
+    command.add_argument("--rate", type=float, default=RATE, help="by which filters turn in a step, at most; less where a fit goes on")
+    command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
     arguments = parser.parse_args()
     if arguments.command == "fit":
         return fit(arguments)
-    if arguments.command == "mean":
-        return mean(arguments)
     gather(arguments.tool, arguments.store, [f for folder in arguments.folders for f in frames_in(folder)])
 
 

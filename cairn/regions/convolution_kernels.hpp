@@ -24,15 +24,15 @@ struct Convolution {
 };
 
 /// The largest number of outputs.
-inline constexpr int kMaxOutputs = 96;
+inline constexpr int kMaxOutputs = 112;
 
 /// The number of elements of a transformed tile of convolve_two().
 inline constexpr int kPlaces = 16;
 
 /// The limit of an output: no sum of products can then exceed 32 bits …
-inline constexpr int kMaxActivation = 4800;
+inline constexpr int kMaxActivation = 4096;
 /// … nor can four times a sum of convolve_two(), with at most that many inputs and weights of 8 bits.
-inline constexpr int kMaxTiledInputs = 96;
+inline constexpr int kMaxTiledInputs = 112;
 static_assert(std::int64_t{4} * 9 * kMaxTiledInputs * 127 * kMaxActivation < INT32_MAX);
 
 /// Integer sums, one multiplication by a float, rounded to nearest: the same bits on every target.

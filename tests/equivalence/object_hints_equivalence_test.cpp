@@ -49,7 +49,7 @@ HintNumbers random_numbers(std::uint32_t seed, int least_channels = 8, int most_
                     {quarter, a, 3, 1, 0},
                     {a, half, 1, 1, 0},
                     {half, b, 3, 1, 0},
-                    {b, 24, 1, 1, -4800}};
+                    {b, 24, 1, 1, -4096}};
   for (const HintLayer& l : numbers.layers) {
     const int inputs = l.side * l.side * l.inputs;
     for (int i = 0; i < inputs * l.outputs; ++i)

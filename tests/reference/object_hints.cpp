@@ -57,7 +57,7 @@ class Reading {
             }
           }
           const float value = static_cast<float>(sum) * numbers_.scale.at(outputs_ + slot(o));
-          return std::clamp<std::int64_t>(std::llrint(value), l.least, 4800);
+          return std::clamp<std::int64_t>(std::llrint(value), l.least, 4096);
         });
     weights_ += l.weights();
     outputs_ += slot(l.outputs);
@@ -74,7 +74,7 @@ class Reading {
 /// Upsamples `small` by two (nearest) and adds `like`.
 Volume doubled_and_added(const Volume& small, const Volume& like) {
   return filled(like.size, like.channels, [&](int x, int y, int c) {
-    return std::min<std::int64_t>(small.at(x / 2, y / 2, c) + like.at(x, y, c), 4800);
+    return std::min<std::int64_t>(small.at(x / 2, y / 2, c) + like.at(x, y, c), 4096);
   });
 }
 
