@@ -10,7 +10,7 @@ such stores.
 
 For each cell of 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
 and the centre and size of its object. It is then quantised: weights to 8 bits per output channel, activations to
-integers. What is drawn in a step depends on its number and on how many there are, and a checkpoint is written every ten
+integers. What is drawn in a step depends on its number, on how many there are and on the start, and a checkpoint is written every ten
 minutes: a fit that was stopped goes on, to the same weights as one that was not. A graphics processor is used if PyTorch
 finds one, and products of bfloat16 where they are fast; the weights then differ from those of another processor.
 """
@@ -28,7 +28,7 @@ from fit import SEED, frames_in, run_tool
 
 BATCH = 24  # half of it in colour, half in grey
 RATE = 0.02  # by which filters turn in a step, at most: see orthogonal_steps()
-RATE_OF_OTHERS, DECAY = 3e-3, 2e-3  # of what is no filter: at most, and three tenths of the filters' rate
+RATE_OF_OTHERS, DECAY = 3e-3, 2e-3  # of what is no filter: the lesser of this and 0.3 of the filters' rate
 WARM_UP = 0.1  # share of the steps
 CLOSE_UPS = 0.3  # share of the samples that simulate a narrower field of view
 PASTES = 0.35  # chance, taken twice, that an object of another frame is pasted

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
+#include <algorithm>
+#include <bit>
 #include <cairn/core/pool.hpp>
 #include <map>
 #include <mutex>
@@ -17,6 +19,13 @@ std::byte* allocate(std::size_t bytes) {
 }
 void deallocate(std::byte* data) noexcept {
   ::operator delete(data, kAlignment);
+}
+
+/// The size rounded up by at most an eighth. Only buffers of one class replace each other: if a small request took a
+/// larger buffer, a later large one of the same frame would have to allocate.
+std::size_t of_class(std::size_t bytes) {
+  const std::size_t step = std::max(std::bit_floor(bytes) / 8, std::size_t{1});
+  return (bytes + step - 1) / step * step;
 }
 
 }  // namespace
@@ -91,9 +100,9 @@ Pool::Buffer Pool::take(std::size_t bytes) const {
   if (!store_) return {allocate(bytes), bytes, nullptr};
   {
     const std::lock_guard lock(store_->mutex);
-    const auto found = store_->free.lower_bound(bytes);
-    // Handing out a much larger buffer would make a later large request allocate, raising the frame's peak.
-    if (found != store_->free.end() && found->first <= bytes + bytes / 4) {
+    bytes = of_class(bytes);
+    const auto found = store_->free.find(bytes);
+    if (found != store_->free.end()) {
       Buffer buffer(found->second, found->first, store_);
       store_->free.erase(found);
       return buffer;

@@ -62,7 +62,7 @@ std::vector<TrueEvent> load_events(const fs::path& path) {
   each_in(path, load_json(path), "events", [&](const output::JsonLine& line) {
     TrueEvent event;
     event.id = line.integer("id", 1, kMaxId);
-    event.is_in_view = line.text("what").find("out of view") == std::string::npos;
+    event.is_in_view = line.text("what").find("while out of view") == std::string::npos;
     event.first_frame = line.integer("first_frame", 0, kMaxFrames);
     event.last_frame = line.integer("last_frame", event.first_frame, kMaxFrames);
     event.from_m = line.maybe_numbers<2>("from_xy");

@@ -295,9 +295,9 @@ std::vector<GroundStep> find_steps(View<const ObjectId> objects, View<const floa
 void add_steps(ObstacleGrid& grid, const std::vector<GroundStep>& steps) {
   for (const GroundStep& step : steps) {
     const float along_x = step.to_m.x - step.from_m.x, along_y = step.to_m.y - step.from_m.y;
-    const float pieces = std::ceil(2 * std::hypot(along_x, along_y) / grid.cell_size_m) + 1;
-    for (float piece = 0; piece <= pieces; ++piece) {
-      const float share = piece / pieces;
+    const int pieces = static_cast<int>(4 * std::hypot(along_x, along_y) / grid.cell_size_m) + 1;
+    for (int piece = 0; piece <= pieces; ++piece) {
+      const float share = static_cast<float>(piece) / static_cast<float>(pieces);
       const float x = (step.from_m.x + share * along_x - grid.origin_x_m) / grid.cell_size_m;
       const float y = (step.from_m.y + share * along_y - grid.origin_y_m) / grid.cell_size_m;
       if (x < 0 || y < 0 || x >= static_cast<float>(grid.width) || y >= static_cast<float>(grid.height))

@@ -23,7 +23,7 @@ struct GroundStep {
 std::vector<GroundStep> find_steps(View<const ObjectId> objects, View<const float> disparity_px,
                                    View<const float> confidence, const FloorFrame& floor,
                                    const StereoRig& rig, const ObstaclesConfig& config);
-/// The cells along the steps are occupied.
+/// Marks the cells along the steps as occupied.
 void add_steps(ObstacleGrid& grid, const std::vector<GroundStep>& steps);
 
 }  // namespace cairn

@@ -204,7 +204,9 @@ HintNetwork load_network(std::span<const std::byte> file) {
     count += layers.back().weights();
   }
   const auto weights = reader.next<std::int8_t>();
-  if (layers.size() != kHintLayers || weights.size() != count)
+  const bool fits =
+      std::ranges::all_of(layers, [](const HintLayer& l) { return l.outputs <= kernels::kMaxOutputs; });
+  if (layers.size() != kHintLayers || weights.size() != count || !fits)
     throw Error("the fitted network has other layers than the library");
   const auto bias = reader.next<std::int32_t>();
   return {layers, weights, bias, reader.next<float>()};

@@ -53,6 +53,7 @@ class Costs {
       positions_m_.push_back(map_from_camera(seen.position_in_camera_m));
       covariances_m2_.push_back(
           in_map(seen.covariance_in_camera_m2, seen.position_in_camera_m, map_from_camera, pose_covariance));
+      vagueness_.push_back(log_vagueness(covariances_m2_.back()));
     }
   }
 
@@ -74,7 +75,7 @@ class Costs {
       const bool is_same_mask = overlap >= kSameMask;
       if (found.d2 > double{config_.gate} && !is_same_mask) return CostTable::kForbidden;
       cost += std::min(found.d2, double{config_.gate}) + found.log_widening +
-              (1 - double{overlap}) * found.log_vagueness +
+              (1 - double{overlap}) * vagueness_[s] +
               kSizeWeight * std::log(ratio(track.extent_m, seen.extent_m));
     } else if (common == 0) {
       return CostTable::kForbidden;
@@ -105,6 +106,7 @@ class Costs {
   std::vector<ObjectId> joined_;
   std::vector<Point3> positions_m_;
   std::vector<Covariance3> covariances_m2_;
+  std::vector<double> vagueness_;
 };
 
 /// Matches tracks and sightings that are unmatched so far.

@@ -10,8 +10,6 @@
 namespace cairn {
 namespace {
 
-constexpr double kSharp_m = 0.15;  // a standard deviation
-
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using Vector3 = Eigen::Vector3d;
@@ -71,9 +69,13 @@ Innovation innovation(Point3 expected_m, const Covariance3& expected_m2, Point3 
   found.d2 = off.dot(sum.llt().solve(off));
   const double volume = sum.determinant();
   found.log_widening = std::log(volume / measured.determinant());
-  found.log_vagueness = std::max(0.0, std::log(measured.determinant()) - 6 * std::log(kSharp_m));
   found.log_likelihood = -(found.d2 + std::log(volume) + 3 * std::log(2 * std::numbers::pi)) / 2;
   return found;
+}
+
+double log_vagueness(const Covariance3& measured_m2) {
+  constexpr double kSharp_m = 0.15;
+  return std::max(0.0, std::log(matrix(measured_m2).determinant()) - 6 * std::log(kSharp_m));
 }
 
 Covariance3 of_position(const Filter6& filter) {

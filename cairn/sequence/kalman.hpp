@@ -17,11 +17,12 @@ Filter6 predicted(const Filter6& filter, double dt_s, double acceleration_noise)
 struct Innovation {
   double d2 = 0;              // Mahalanobis distance, squared
   double log_widening = 0;    // ln(|expected + measured| / |measured|) ≥ 0
-  double log_vagueness = 0;   // ln(|measured| / |(0.15 m)²·I|), at least 0
   double log_likelihood = 0;  // of the position, natural logarithm
 };
 Innovation innovation(Point3 expected_m, const Covariance3& expected_m2, Point3 measured_m,
                       const Covariance3& measured_m2);
+/// ln(|measured| / |(0.15 m)²·I|), at least 0: how little such a place says about what is there.
+double log_vagueness(const Covariance3& measured_m2);
 /// The upper left block: the covariance of the position.
 Covariance3 of_position(const Filter6& filter);
 

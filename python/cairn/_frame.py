@@ -81,7 +81,7 @@ class Frame:
         return self.floor_frame and _cairn.scan(self._data, self.floor_frame, self._how)
 
     def grid(self) -> Optional[ObstacleGrid]:
-        """The obstacles on the floor: an ObstacleGrid. None without a rig or a ground."""
+        """The obstacles and steps on the floor: an ObstacleGrid. None without a rig or a ground."""
         return self.floor_frame and _cairn.grid(self._data, self.floor_frame, self._how)
 
     def ground_steps(self) -> Optional[List[GroundStep]]:

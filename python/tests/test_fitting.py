@@ -161,7 +161,7 @@ def store(hints, folder, ids):
 
 
 def test_every_frame_comes_once_in_a_round(hints):
-    sampler = types.SimpleNamespace(frames=range(60))
+    sampler = types.SimpleNamespace(frames=range(60), seed=1)
     half = hints.BATCH // 2
     drawn = np.concatenate([hints.Sampler.numbers(sampler, step) for step in range(60 // half)])
     assert sorted(drawn) == list(range(120))
@@ -189,6 +189,21 @@ def test_a_fit_goes_on_from_the_networks_integers(hints, tmp_path, width):
     with torch.no_grad():
         expected, found = net(data), again(data)
     assert (found - expected).abs().max() < 0.05 * expected.abs().max()  # but for the rounding
+
+
+def test_a_step_turns_filters_along_an_orthogonal_matrix(hints):
+    torch = pytest.importorskip("torch")
+    torch.manual_seed(1)
+    for shape in ((8, 40), (40, 8)):
+        values = torch.linalg.svdvals(hints.orthogonal(torch.randn(shape)))
+        assert values.min() > 0.5 and values.max() < 1.4
+    weight = torch.nn.Parameter(3 * torch.randn(16, 4, 3, 3))
+    weight.grad = torch.randn_like(weight)
+    before, gradient = weight.detach().clone(), weight.grad.clone()
+    hints.orthogonal_steps([weight], 0.01).step()
+    step = weight.detach() - before * 4 / before.norm()  # 16 filters, of length 1 in the mean
+    assert 0.03 < step.norm() < 0.05  # of a length of 4
+    assert (step * gradient).sum() < 0
 
 
 def test_targets_of_the_network(hints, tmp_path):

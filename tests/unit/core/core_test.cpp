@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory_resource>
+#include <random>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -101,6 +102,30 @@ TEST(PoolMemory, AllocatesSmallVectorsOnTheHeap) {
   PoolMemory memory(pool);
   const std::pmr::vector<int> few(100, 7, &memory);
   EXPECT_EQ(pool.heap_allocations(), 0);
+}
+
+TEST(Pool, WhatIsDoneAgainAllocatesNothing) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    const Pool pool = Pool::make();
+    std::vector<std::int64_t> allocations;
+    for (int frame = 0; frame < 3; ++frame) {
+      std::mt19937 random(seed);
+      std::vector<Image<std::uint8_t>> held;
+      for (int k = 0; k < 200; ++k) {
+        const auto at = static_cast<std::ptrdiff_t>(random() % 8);
+        const int width = static_cast<int>(random() % 200) + 1;
+        if (at < std::ssize(held)) {
+          held.erase(held.begin() + at);
+        } else {
+          held.emplace_back(Size{width, 20}, pool);
+        }
+      }
+      held.clear();
+      allocations.push_back(pool.heap_allocations());
+    }
+    EXPECT_GT(allocations.front(), 0);
+    EXPECT_EQ(allocations.front(), allocations.back()) << "seed " << seed;
+  }
 }
 
 TEST(Pool, DoesNotUseALargeBufferForASmallImage) {

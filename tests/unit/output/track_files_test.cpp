@@ -196,7 +196,9 @@ TEST(TrueFrames, AFolderHasLabelsPosesAndPositions) {
   write_truth(folder, "# camera to world\n0 -1 0 5\n1 0 0 6\n0 0 1 7\n0 0 0 1\n",
               R"({"objects": [{"id": 9, "centroid_visible_cam": [1, 2, 3], "centroid_world": null}]})");
   (void)folder.with("events.json", R"({"events": [{"id": 9, "what": "moves in view", "first_frame": 1,
-      "last_frame": 2, "from_xy": [0, 1], "to_xy": [2, 3]}]})");
+      "last_frame": 2, "from_xy": [0, 1], "to_xy": [2, 3]},
+      {"id": 8, "what": "walks", "first_frame": 0, "last_frame": 2},
+      {"id": 7, "what": "carried away while out of view", "first_frame": 0, "last_frame": 2}]})");
   const input::TrueSequence truth = input::load_truth(folder.path());
   ASSERT_EQ(truth.frames.size(), 1U);
   const input::TrueFrame& one = truth.frames[0];
@@ -205,8 +207,10 @@ TEST(TrueFrames, AFolderHasLabelsPosesAndPositions) {
   EXPECT_EQ((*one.world_from_camera)({1, 0, 0}), (Point3{5, 7, 7}));
   EXPECT_EQ(one.places.at(9).visible_in_camera_m, (Point3{1, 2, 3}));
   EXPECT_FALSE(one.places.at(9).in_world_m);
-  ASSERT_EQ(truth.events.size(), 1U);
+  ASSERT_EQ(truth.events.size(), 3U);
   EXPECT_TRUE(truth.events[0].is_in_view);
+  EXPECT_TRUE(truth.events[1].is_in_view);
+  EXPECT_FALSE(truth.events[2].is_in_view);
   const Image<TruthId> labels = input::load_true_labels(one);
   EXPECT_EQ(number(labels(1, 1)), 9);
   EXPECT_EQ(labels(0, 0), TruthId::dont_care);

@@ -106,8 +106,8 @@ TEST(Innovation, IsTheGaussiansExponentAndVolume) {
   const Innovation found = innovation({0, 0, 0}, variances(3), {4, 0, 0}, variances(1));
   EXPECT_NEAR(found.d2, 4, 1e-12);                            // 4² / (3 + 1)
   EXPECT_NEAR(found.log_widening, 3 * std::log(4.0), 1e-12);  // |4·I| / |I|
-  EXPECT_NEAR(found.log_vagueness, -6 * std::log(0.15), 1e-12);
-  EXPECT_EQ(innovation({}, variances(3), {}, variances(0.01)).log_vagueness, 0);
+  EXPECT_NEAR(log_vagueness(variances(1)), -6 * std::log(0.15), 1e-12);
+  EXPECT_EQ(log_vagueness(variances(0.01)), 0);
   EXPECT_NEAR(found.log_likelihood, -0.5 * (4 + std::log(64.0) + 3 * std::log(6.283185307179586)), 1e-9);
 }
 
