@@ -99,7 +99,7 @@ def test_a_kerb_is_a_step_of_the_ground(kerb):
     assert abs(step.from_m[0] - 2) < 0.15 and abs(step.to_m[0] - 2) < 0.15 and abs(step.from_m[2]) < 0.01
     assert step.to_m[1] - step.from_m[1] > 1.5
     grid = kerb.grid()
-    middle = (np.add(step.from_m, step.to_m)[:2] / 2 - [grid.origin_x_m, grid.origin_y_m]) / grid.cell_size_m
+    middle = (np.add(step.from_m, step.to_m)[:2] / 2 - grid.origin_in_floor_m) / grid.cell_size_m
     assert grid.cells[int(middle[1]), int(middle[0])] == 100
     written, = json.loads(kerb.to_json())["ground_steps"]
     assert np.allclose([*written["from_m"], *written["to_m"], written["height_m"]], [*step.from_m, *step.to_m, step.height_m])
