@@ -10,8 +10,8 @@ such stores.
 
 For each cell of 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
 and the centre and size of its object. It is then quantised: weights to 8 bits per output channel, activations to
-integers. What is drawn in a step depends on its number, on how many there are and on the start, and a checkpoint is written every ten
-minutes: a fit that was stopped goes on, to the same weights as one that was not. A graphics processor is used if PyTorch
+integers. What is drawn in a step depends on its number, on how many there are and on the start, and a checkpoint is
+written every ten minutes: a fit that was stopped goes on, to the same weights as one that was not. A graphics processor is used if PyTorch
 finds one, and products of bfloat16 where they are fast; the weights then differ from those of another processor.
 """
 import argparse

@@ -245,6 +245,7 @@ struct Result {
   const Frame& frame;
   const Provenance& provenance;
   Extras extras;
+  std::optional<ObstacleGrid> grid{};  // if wanted and known
 };
 
 void write_disparity(const fs::path& path, const Result& r) {
@@ -323,13 +324,14 @@ std::string npy_bytes(View<const float> image) {
   return bytes;
 }
 
-bool wants_grid(const Result& r) {
-  return r.extras.grid && !r.frame.space.empty() && floor_frame(r.frame.ground, r.provenance.rig).has_value();
+bool has_grid(const Result& r) {
+  return r.grid.has_value();
 }
 
-ObstacleGrid grid_of(const Result& r) {
-  return map_obstacles(r.frame, *floor_frame(r.frame.ground, r.provenance.rig), *r.provenance.rig,
-                       r.provenance.config.obstacles);
+std::optional<ObstacleGrid> grid_of(const Frame& frame, const Provenance& provenance) {
+  const auto floor = floor_frame(frame.ground, provenance.rig);
+  if (!floor || frame.space.empty()) return std::nullopt;
+  return map_obstacles(frame, *floor, *provenance.rig, provenance.config.obstacles);
 }
 
 /// In the format of ROS map_server: the row with the greatest y first.
@@ -393,10 +395,10 @@ constexpr std::array kResultFiles{
                  const Image<float> depth = depth_m(r);
                  io::write_file(path, npy_bytes(depth));
                }},
-    ResultFile{"grid.pgm", wants_grid,
-               [](const fs::path& path, const Result& r) { io::write_file(path, grid_pgm(grid_of(r))); }},
-    ResultFile{"grid.yaml", wants_grid,
-               [](const fs::path& path, const Result& r) { io::write_file(path, grid_yaml(grid_of(r))); }},
+    ResultFile{"grid.pgm", has_grid,
+               [](const fs::path& path, const Result& r) { io::write_file(path, grid_pgm(*r.grid)); }},
+    ResultFile{"grid.yaml", has_grid,
+               [](const fs::path& path, const Result& r) { io::write_file(path, grid_yaml(*r.grid)); }},
     ResultFile{"overlay.png", always,
                [](const fs::path& path, const Result& r) {
                  const Image<Rgb> picture = draw_objects(r.left, r.left_rgb, r.frame.objects, r.frame.floor);
@@ -535,6 +537,8 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
   // Absolute and without a trailing slash, so that every folder has a parent.
   fs::path folder = fs::absolute(given_folder, failed).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
+  Result result{left, left_rgb, frame, provenance, extras};
+  if (extras.grid) result.grid = grid_of(frame, provenance);
   try {
     if (fs::exists(folder)) {
       if (!fs::is_directory(folder)) throw Error(given_folder.string() + ": is a file, expected a folder");
@@ -542,13 +546,13 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
       if (extras.object_clouds && fs::exists(clouds) && !fs::is_directory(clouds))
         throw Error(clouds.string() + ": is a file, expected a folder");
       const TemporaryFolder made(folder);  // inside the folder: one next to it might be on another disk
-      write_files(made.path(), {left, left_rgb, frame, provenance, extras});
+      write_files(made.path(), result);
       replace(made.path(), folder);
       return;
     }
     Ancestors ancestors(folder.parent_path());
     const TemporaryFolder made(folder.parent_path());
-    write_files(made.path(), {left, left_rgb, frame, provenance, extras});
+    write_files(made.path(), result);
     fs::rename(made.path(), folder);
     ancestors.keep();
   } catch (const fs::filesystem_error& error) {
