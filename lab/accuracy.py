@@ -73,14 +73,18 @@ MIDDLEBURY = [f"real/middlebury{year}" for year in (2001, 2003, 2005, 2006, 2014
 FRAME_SETS = {"Rendered, 320x240": "rendered/dev/320x240", "Rendered, 640x480": "rendered/dev/640x480",
               "rc_tabletop, real, 640x480": "real/rc_tabletop"}
 YARDSTICK = pathlib.Path("build/fit/yardstick").resolve()  # made by ./dev worlds yardstick
+LARGER = ["621x188", "640x360", "640x480"]
 SPLITS = {  # folders, and what they are used for
     "train 320x240": (["rendered/train/320x240"], "fit"), "train_outdoor": (["rendered/train_outdoor/320x240"], "fit"),
+    "train_outdoor, larger": ([f"rendered/train_outdoor/{size}" for size in LARGER], "fit"),
     "dev 320x240": (["rendered/dev/320x240"], "fit"), "dev 640x480": (["rendered/dev/640x480"], "fit"),
-    "yardstick indoors": ([YARDSTICK / "indoors"], "choices"), "yardstick outdoors": ([YARDSTICK / "outdoors"], "choices"),
+    **{f"yardstick {place}": ([YARDSTICK / place], "choices") for place in ("indoors", "outdoors", "large")},
     "rc_tabletop": (["real/rc_tabletop"], "choices"), "Middlebury": (MIDDLEBURY, "choices"),
     **{f"validate{kind} 320x240": ([f"rendered/validate{kind}/320x240"], "reports") for kind in ("", "_varied", "_models", "_outdoor")},
+    "validate_outdoor, larger": ([f"rendered/validate_outdoor/{size}" for size in LARGER], "reports"),
     "validate 640x480": (["rendered/validate/640x480"], "reports"),
     "validate rc_tabletop": (["real/validate/rc_tabletop"], "reports"), "validate Middlebury": (["real/validate/middlebury"], "reports"),
+    "real streets": (["real/outdoor_fit"], "choices"), "validate real streets": (["real/validate_outdoor"], "reports"),
 }
 
 

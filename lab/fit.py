@@ -4,7 +4,7 @@
 """Fits the trees that score regions, those that choose planes of disparity, those that recognise the floor, and those that
 correct the disparity of an object (cairn/fitted/*.bin).
 
-fit.py TOOL WORLDS [--data DATA] [--yardstick FOLDER] [--folds N] [--work FOLDER] [--hints FILE] [--out FOLDER] [--page FILE]
+fit.py TOOL WORLDS [--streets STREETS] [--data DATA] [--yardstick FOLDER] [--folds N] [--work FOLDER] [--hints FILE] [--out FOLDER] [--page FILE]
 It needs the network that fit_hints.py writes to the work folder, and worlds that this network has not seen: trees
 fitted to hints of a network that has would trust them too much. fit.py TOOL WORLDS --ablation FILE: refits without
 each kind of cue in turn, and reports the gain of each. fit.py TOOL WORLDS --distances [--out FOLDER]: fits only the trees
@@ -63,19 +63,23 @@ def frames_in(folder):
     return sorted(p.parent for p in pathlib.Path(folder).glob("*/left.png") if (p.parent / "objects.png").exists())
 
 
-def fit_sets(worlds, data):
+def fit_sets(worlds, data, streets=None):
     """Worlds that the network has not seen, and our own rendered rooms and streets. The network was fitted to those of
     train, too, but its loss there is no less than on dev, so its hints are not better than elsewhere."""
     sets = {"worlds": frames_in(worlds)}
+    if streets:
+        sets["wide streets"] = frames_in(streets)
     if data:
         sets |= {name: frames_in(data / "rendered" / name / "320x240") for name in ("train", "train_outdoor")}
+        sets |= {f"train_outdoor {size}": frames_in(data / "rendered/train_outdoor" / size)
+                 for size in ("621x188", "640x360", "640x480")}
         sets |= {f"dev {size}": frames_in(data / "rendered/dev" / size) for size in ("320x240", "640x480")}
     return sets
 
 
 def checked_sets(yardstick, data):
     """Choices are made by these; no number is fitted to them."""
-    sets = {f"yardstick {place}": frames_in(yardstick / place) for place in ("indoors", "outdoors")} if yardstick else {}
+    sets = {f"yardstick {place}": frames_in(yardstick / place) for place in ("indoors", "outdoors", "large")} if yardstick else {}
     if data:
         sets |= {"rc_tabletop": frames_in(data / "real/rc_tabletop"),
                  "middlebury": [data / ("real/middlebury" + name) for name in MIDDLEBURY],
@@ -192,7 +196,7 @@ class Fitting:
         self.of_library = False  # find objects by the library's network and trees
         self.jobs = jobs_of(sets)
         self.fold = np.array([fold_of(frame, folds) for frame, _, _ in self.jobs])
-        self.weight = np.array([1 if name == "worlds" else ROOM_WEIGHT for _, _, name in self.jobs])
+        self.weight = np.array([1 if name in ("worlds", "wide streets") else ROOM_WEIGHT for _, _, name in self.jobs])
 
     def run(self, trees, *options, jobs=None):
         """trees(i): the two files of job i."""
@@ -371,7 +375,7 @@ def gains_table(fitting, kind, header):
 
 def frames_used(sets):
     return "Fitted to: " + ", ".join(f"{name} {len(frames)}" for name, frames in sets.items()) + \
-        "; each frame once in colour and once in grey. *worlds*: [worlds](worlds.md) that the network has not seen.\n"
+        "; each frame once in colour and once in grey. *worlds*, and *wide streets* as a car sees them: [worlds](worlds.md) that the network has not seen.\n"
 
 
 def page_of_distances(fitting, sets, distances):
@@ -501,6 +505,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("tool", type=pathlib.Path)
     parser.add_argument("worlds", type=pathlib.Path, help="frames that the network has not seen")
+    parser.add_argument("--streets", type=pathlib.Path, help="more of them: streets as a car sees them")
     parser.add_argument("--data", type=pathlib.Path, help="the data collection: rendered rooms are added to the fit")
     parser.add_argument("--yardstick", type=pathlib.Path, help="frames that are only reported")
     parser.add_argument("--folds", type=int, default=2)
@@ -517,7 +522,7 @@ def main():
     parser.add_argument("--min-scores", default=MIN_SCORE, help="thresholds for the report; the page shows the first")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
-    sets = fit_sets(arguments.worlds, arguments.data)
+    sets = fit_sets(arguments.worlds, arguments.data, arguments.streets)
     fitting = Fitting(arguments.tool, arguments.work, arguments.hints or arguments.work / "hints", arguments.folds, sets)
     say(f"{len(fitting.jobs)} frames, colour and grey")
     checked = jobs_of(checked_sets(arguments.yardstick, arguments.data))

@@ -8,7 +8,7 @@ in grey, into the folder STORE.
 fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--rate R] [--width W] [--worlds N] [--start FILE]: fits to
 such stores.
 
-For each cell of 2×2 pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
+For each cell of about four pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
 and the centre and size of its object. It is then quantised: weights to 8 bits per output channel, activations to
 integers. What is drawn in a step depends on its number, on how many there are and on the start, and a checkpoint is
 written every ten minutes: a fit that was stopped goes on, to the same weights as one that was not. A graphics processor is used if PyTorch
@@ -33,7 +33,7 @@ WARM_UP = 0.1  # share of the steps
 CLOSE_UPS = 0.3  # share of the samples that simulate a narrower field of view
 PASTES = 0.35  # chance, taken twice, that an object of another frame is pasted
 CALM = 0.2  # share of the steps, the last ones, without close-ups and pastes
-WIDTH, HEIGHT = 160, 120  # cells of a frame
+WIDTH, HEIGHT = 160, 120  # cells of a frame, or of what is seen of a larger one
 CHANNELS = 12
 FIRST, SECOND, THIRD, LAST = 32, 64, 112, 48  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
 SHARED_ROOT = 24  # root of the size, in cells, of an object whose cells count as much as the background's
@@ -63,16 +63,23 @@ def gather(tool, store, frames):
     run_tool(tool, store, jobs, lambda i: "- - -", "--inputs", store / "inputs@", parts=parts)
     cells = np.lib.format.open_memmap(store / "cells.npy", "w+", np.int16, (len(jobs), CHANNELS, HEIGHT, WIDTH))
     truth = np.lib.format.open_memmap(store / "truth.npy", "w+", np.uint8, (len(jobs), HEIGHT, WIDTH))
-    area = WIDTH * HEIGHT
-    record = 4 + area * (CHANNELS + 1)
     for part in range(parts):
-        values = np.fromfile(store / f"inputs{part}", np.int16).reshape(-1, record)
-        for row in values:
-            if (row[1], row[2], row[3]) != (WIDTH, HEIGHT, 0):
-                raise SystemExit("fit_hints.py: frames of 4:3 with complete truth are expected")
+        values = np.fromfile(store / f"inputs{part}", np.int16)
+        if not len(values):  # fewer frames than processors
+            continue
+        width, height = map(int, values[1:3])
+        area = width * height
+        for row in values.reshape(-1, 4 + area * (CHANNELS + 1)):
+            if (row[1], row[2], row[3]) != (width, height, 0) or width < WIDTH or height < HEIGHT:
+                raise SystemExit("fit_hints.py: frames of one size, with complete truth, are expected")
             job = parts * int(row[0]) + part
-            cells[job] = row[4:4 + area * CHANNELS].reshape(HEIGHT, WIDTH, CHANNELS).transpose(2, 0, 1)
-            truth[job] = np.where(row[4 + area * CHANNELS:] < 0, DONT_CARE, row[4 + area * CHANNELS:]).reshape(HEIGHT, WIDTH)
+            # Of a larger image, which has more cells, a window; with what was normalised by the whole image as it is.
+            random = np.random.RandomState([SEED, job])
+            x, y = random.randint(width - WIDTH + 1), random.randint(height - HEIGHT + 1)
+            window = np.s_[y:y + HEIGHT, x:x + WIDTH]
+            cells[job] = row[4:4 + area * CHANNELS].reshape(height, width, CHANNELS)[window].transpose(2, 0, 1)
+            ids = row[4 + area * CHANNELS:].reshape(height, width)[window]
+            truth[job] = np.where(ids < 0, DONT_CARE, ids)
         (store / f"inputs{part}").unlink()
         (store / f"jobs{part}").unlink()
     done.write_text(listed)
@@ -140,7 +147,7 @@ class Sampler:
         cells, truth = zip(*map(self.frames.take, self.numbers(step)))
         is_calm = step >= self.first_calm
         narrower = uniform(0, 1) < (0 if is_calm else CLOSE_UPS)
-        scale = torch.exp(torch.where(narrower, uniform(0.25, 0.8), uniform(-0.25, 0.25)))
+        scale = torch.exp(torch.where(narrower, uniform(0.25, 0.9), uniform(-0.25, 0.25)))
         x = (self.across + 0.5 - WIDTH / 2 - uniform(-0.1, 0.1) * WIDTH) / scale + WIDTH / 2
         y = (self.down + 0.5 - HEIGHT / 2 - uniform(-0.1, 0.1) * HEIGHT) / scale + HEIGHT / 2
         x = torch.where(uniform(0, 1) < 0.5, WIDTH - x, x).floor().long()

@@ -33,7 +33,7 @@
 namespace cairn::lab {
 namespace {
 
-constexpr double kMinArea = 0.0015;  // share of the image; candidate regions
+constexpr double kMinArea = 0.0006;  // share of the image; candidate regions: below objects.min_area
 constexpr double kMaxArea = 0.7;
 constexpr float kBothBackground =
     0.3F;  // weight of pairs that are both background: the truth does not separate its surfaces

@@ -415,6 +415,19 @@ Look wall_look(Dice& dice) {
   return look;
 }
 
+Look masonry_look(Dice& dice) {
+  const float w = draw(dice, 0.2, 0.6), h = w * draw(dice, 0.3, 0.7);
+  const float value = draw(dice, 0.2, 0.75), rich = draw(dice, 0, 0.6), hue = draw(dice, 0.02, 0.13);
+  const Vec3 stone = hsv(hue, rich, value);
+  const float variation = draw(dice, 0.1, 0.4), joint = draw(dice, 0.008, 0.02);
+  Look look = tiled(dice, {w, h}, joint, variation);
+  look.colours = {stone, similar(dice, stone), draw(dice, 0.5, 1.4) * stone, {}};
+  look.shift = dice.chance(0.7) ? 0.5F : 2, look.gloss = 0, look.roughness = 1;
+  look.checker = dice.chance(0.3);
+  worn(look, dice);
+  return look;
+}
+
 Look ground_look(Dice& dice) {
   const int kind = dice.below(4);
   const float v = draw(dice, 0.2, 0.6), hue = draw(dice, 0.07, 0.13), s = draw(dice, 0, 0.25);

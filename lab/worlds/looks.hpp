@@ -72,6 +72,7 @@ struct Look {
 Look random_look(Dice& dice);
 Look floor_look(Dice& dice);
 Look wall_look(Dice& dice);
+Look masonry_look(Dice& dice);
 /// Marks that are no objects: stickers, stains, spots of light or shadow, painted signs; with a rim: lids, drains.
 void scatter_marks(Look& look, Dice& dice);
 /// Outdoors: asphalt, paving, gravel, lawn.

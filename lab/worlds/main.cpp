@@ -97,16 +97,16 @@ void write_tours(const Arguments& arguments) {
 
 /// Never changes: its scores are compared over the years.
 void write_yardstick(Arguments arguments) {
-  arguments.world = {.seed = 4100, .use = Use::yardstick, .size = {320, 240}, .outdoor_share = 0};
   const fs::path folder = arguments.out;
-  arguments.out = folder / "indoors";
-  arguments.last = 149;
-  write_frames(arguments);
-  arguments.world.seed = 4200;
-  arguments.world.outdoor_share = 1;
-  arguments.out = folder / "outdoors";
-  arguments.last = 79;
-  write_frames(arguments);
+  const auto write = [&](const char* part, int count, std::uint64_t seed, Size size, double outdoor_share) {
+    arguments.world = {.seed = seed, .use = Use::yardstick, .size = size, .outdoor_share = outdoor_share};
+    arguments.out = folder / part;
+    arguments.last = count - 1;
+    write_frames(arguments);
+  };
+  write("indoors", 150, 4100, {320, 240}, 0);
+  write("outdoors", 80, 4200, {320, 240}, 1);
+  write("large", 60, 4300, {640, 480}, 0.35);
 }
 
 void write_laboratory(Arguments arguments) {

@@ -895,10 +895,15 @@ class Builder {
 
   void facade(Vec3 from, Vec3 along, float height) {
     const Vec3 u = unit(along), in{-u.y, u.x, 0};
-    const float l = length(along);
     quad(from, along, {0, 0, height}, wall_look(dice_));
     walls_.push_back({{from.x, from.y}, {from.x + along.x, from.y + along.y}, {in.x, in.y}});
-    const Look frame = look_of_thing();
+    windows(from, along, height, look_of_thing());
+  }
+
+  /// Rows of panes on the left-hand side of a wall.
+  void windows(Vec3 from, Vec3 along, float height, const Look& frame) {
+    const Vec3 u = unit(along), in{-u.y, u.x, 0};
+    const float l = length(along);
     Look glass;
     glass.colours.fill(draw(dice_, 0.02, 0.3) * Vec3{0.8F, 0.95F, 1});
     glass.gloss = 0.08F, glass.roughness = 0.05F;
@@ -914,9 +919,56 @@ class Builder {
     }
   }
 
-  void hedge(Vec3 from, Vec3 along) {
-    const float h = draw(dice_, 0.8, 2.2), l = length(along), w = draw(dice_, 0.4, 0.9);
-    const Vec3 u = unit(along);
+  /// A house behind its front, which looks to the left of `along`.
+  void house(Vec3 from, Vec3 along, float depth, float height) {
+    const Vec3 u = unit(along), in{-u.y, u.x, 0}, middle = from + 0.5F * along - 0.5F * depth * in;
+    const float l = length(along), turn = std::atan2(u.y, u.x);
+    const Look walls = dice_.chance(0.5) ? masonry_look(dice_) : wall_look(dice_);
+    add(moved(turned(box({l, depth, height}), kZ, turn), middle), walls);
+    const Look frame = look_of_thing();
+    windows(from, along, height, frame);
+    if (dice_.chance(0.6)) windows(from - depth * in, depth * in, height, frame);
+    if (dice_.chance(0.6)) windows(from + along, -depth * in, height, frame);
+    if (dice_.chance(0.3)) return;  // a flat roof
+    const float rise = draw(dice_, 1, 3.5), over = draw(dice_, 0, 0.6),
+                ridge = dice_.chance(0.3) ? 0.5F : 1.0F;
+    Mesh roof = warped(box({l + over, depth + over, rise}), [&](Vec3 p) {
+      return p.z > 0.5F * rise ? Vec3{ridge * p.x, 0, p.z} : p;
+    });
+    add(moved(turned(std::move(roof), kZ, turn), middle + Vec3{0, 0, height}), wall_look(dice_));
+  }
+
+  /// Houses, or sheds, on both sides of a way and at its end, apart or joined.
+  void houses(float left, float right, float far) {
+    const auto row = [&](const auto& front_of, float from, float to) {
+      const bool are_joined = dice_.chance(0.35);
+      const float back = draw(dice_, 0.2, 5), tall = draw(dice_, 3, 8);
+      for (float t = from; t < to;) {
+        const bool is_shed = dice_.chance(0.25);
+        const float l = is_shed ? draw(dice_, 2, 6) : draw(dice_, 4, 13);
+        const auto [corner, along] = front_of(t, l, back + (are_joined ? 0 : draw(dice_, 0, 2)));
+        const float deep = draw(dice_, 2, 5) + (is_shed ? 0 : 4.0F);
+        house(corner, along, deep, is_shed ? draw(dice_, 1.9, 2.8) : tall * draw(dice_, 0.8, 1.2));
+        t += l + (are_joined ? 0 : draw(dice_, 0.5, 9));
+      }
+    };
+    using Front = std::pair<Vec3, Vec3>;
+    const auto on_the_left = [&](float x, float l, float back) {
+      return Front{{x + l, left + back, 0}, {-l, 0, 0}};
+    };
+    const auto on_the_right = [&](float x, float l, float back) {
+      return Front{{x, right - back, 0}, {l, 0, 0}};
+    };
+    const auto at_the_end = [&](float y, float l, float back) {
+      return Front{{far + back, y, 0}, {0, l, 0}};
+    };
+    if (dice_.chance(0.75)) row(on_the_left, draw(dice_, -3, 14), 60);
+    if (dice_.chance(0.75)) row(on_the_right, draw(dice_, -3, 14), 60);
+    far += draw(dice_, 0.5, 20);
+    if (dice_.chance(0.6)) row(at_the_end, right - draw(dice_, 0, 15), left + 10);
+  }
+
+  Look leaves() {
     Look leaves;
     leaves.pattern = Pattern::noise;
     leaves.period = {0.05F, 0.05F};
@@ -924,10 +976,36 @@ class Builder {
     leaves.colours = {
         Vec3{0.35F * green, green, 0.3F * green}, Vec3{0.1F * green, 0.35F * green, 0.1F * green}, {}, {}};
     leaves.seed = static_cast<std::uint32_t>(dice_.bits());
+    return leaves;
+  }
+
+  void hedge(Vec3 from, Vec3 along) {
+    const float h = draw(dice_, 0.8, 2.2), l = length(along), w = draw(dice_, 0.4, 0.9);
+    const Vec3 u = unit(along);
+    const Look look = leaves();
     for (float t = 0; t < l; t += 0.8F * h) {
       Mesh lump = blob({0.7F * h, w, 0.55F * h}, 0.22F, 6, dice_, 40);
       add(moved(turned(std::move(lump), kZ, std::atan2(u.y, u.x)), from + t * u + Vec3{0, 0, 0.5F * h}),
-          leaves);
+          look);
+    }
+  }
+
+  /// Trimmed hedges along a way, which begin and end in view.
+  void hedges(float border, float way) {
+    if (std::abs(border - way) < 1.2F) return;
+    const float h = draw(dice_, 0.6, 2.4), w = draw(dice_, 0.4, 1), rough = draw(dice_, 0.005, 0.05),
+                y = way + draw(dice_, 0.55, 0.95) * (border - way);
+    const Look look = leaves();
+    float x = draw(dice_, 0.5, 6);
+    for (int k = dice_.between(1, 3); k > 0; --k) {
+      const float l = draw(dice_, 1.5, 9);
+      const auto parts = [](float side) { return std::max(static_cast<int>(8 * side), 2); };
+      Mesh mesh = warped(slab({l, w, h}, parts(l), parts(w), parts(h)), [&](Vec3 p) {
+        return p + rough * Vec3{draw(dice_, -1, 1), draw(dice_, -1, 1), p.z > 0.01F ? draw(dice_, -1, 1) : 0};
+      });
+      settle(mesh);
+      add(moved(std::move(mesh), {x + l / 2, y, 0}), look);
+      x += l + draw(dice_, 0.8, 4);
     }
   }
 
@@ -1094,6 +1172,10 @@ class Builder {
     at.z += height_of_ground({at.x, at.y});
     nearest_ = 0.9F;
     if (is_fit && street.chance(0.3)) parked_cars(left, right);
+    if (is_fit && street.chance(0.45)) houses(left, right, far);
+    for (const float side : {left, right}) {
+      if (is_fit && street.chance(0.2)) hedges(side, at.y);
+    }
     Amount amount{dice_.chance(0.03) ? 0 : dice_.between(2, 9), 0, 0, 22, 0.15, 0.04, 0.12, 0.12};
     fill(0, amount);
   }

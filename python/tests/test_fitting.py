@@ -139,6 +139,7 @@ def test_the_fit_needs_worlds_alone(tmp_path):
             (folder / file).touch()
     assert fit.fit_sets(tmp_path / "worlds", None) == {"worlds": [world]}
     assert fit.fit_sets(tmp_path / "worlds", tmp_path / "data")["dev 320x240"] == [room]
+    assert fit.fit_sets(tmp_path / "worlds", None, tmp_path / "worlds")["wide streets"] == [world]
     assert fit.checked_sets(None, None) == {}
 
 
@@ -158,6 +159,31 @@ def store(hints, folder, ids):
         truth[:, 40:80, columns] = number
     np.save(folder / "cells.npy", cells)
     np.save(folder / "truth.npy", truth)
+
+
+def test_of_a_larger_frame_a_window_is_gathered(hints, tmp_path, monkeypatch):
+    width, height = hints.WIDTH + 40, hints.HEIGHT + 30
+    down, across = np.mgrid[:height, :width]
+
+    def run_tool(tool, work, jobs, files, *options, parts):
+        cells = np.zeros((height, width, hints.CHANNELS), np.int16)
+        cells[..., 0], cells[..., 1] = across, down
+        ids = np.where(across < 90, 7, -1).astype(np.int16)
+        for part in range(parts):
+            mine = range(len(jobs[part::parts]))
+            rows = [np.concatenate([np.array([i, width, height, 0], np.int16), cells.ravel(), ids.ravel()]) for i in mine]
+            np.array(rows, np.int16).tofile(work / f"inputs{part}")
+            (work / f"jobs{part}").touch()
+
+    monkeypatch.setattr(hints, "run_tool", run_tool)
+    monkeypatch.setattr(hints.os, "cpu_count", lambda: 8)  # more than there are jobs
+    hints.gather("tool", tmp_path, ["a", "b", "c"])
+    cells, truth = np.load(tmp_path / "cells.npy"), np.load(tmp_path / "truth.npy")
+    first = cells[:, 0, 0, 0], cells[:, 1, 0, 0]
+    assert len(cells) == 6 and len(set(zip(*map(tuple, first)))) > 3
+    assert (cells[:, 0] == first[0][:, None, None] + across[:hints.HEIGHT, :hints.WIDTH]).all()
+    assert (cells[:, 1] == first[1][:, None, None] + down[:hints.HEIGHT, :hints.WIDTH]).all()
+    assert (truth == np.where(cells[:, 0] < 90, 7, hints.DONT_CARE)).all()
 
 
 def test_every_frame_comes_once_in_a_round(hints):

@@ -150,6 +150,20 @@ TEST(WorldTruth, IdsAreThoseOfTheThings) {
   for (const char* way : {"free", "wall", "on", "touch", "edge"}) EXPECT_TRUE(ways.contains(way)) << way;
 }
 
+TEST(Worlds, OfTheYardstickNeverHaveAnotherBackground) {
+  std::size_t bodies = 0, triangles = 0;
+  for (int index = 0; index < 20; ++index) {
+    const World world =
+        make_world({.seed = 4200, .use = Use::yardstick, .size = {320, 240}, .outdoor_share = 1}, index);
+    for (const Body& body : world.scene.bodies) {
+      bodies += body.id == 0 ? 1 : 0;
+      triangles += body.id == 0 ? body.mesh.triangles.size() : 0;
+    }
+  }
+  EXPECT_EQ(bodies, 3181U);
+  EXPECT_EQ(triangles, 2301886U);
+}
+
 TEST(Worlds, AreTheSameForTheSameNumberOnAnyThread) {
   WorldOptions options = small(0.3);
   const WorldFrame first = make_frame(make_world(options, 7), 4);
