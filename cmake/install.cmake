@@ -19,13 +19,13 @@ endfunction()
 # All other headers are private: they may change or disappear in any version.
 set(private_headers
   core/disjoint_sets core/each_index core/highway_targets stereo/label_kernels_plain core/nearest core/stage_clock
-  core/pair_copy core/pool_memory core/random core/scratch core/statistics
+  core/pair_copy core/pool_memory core/random core/robust_fit core/scratch core/statistics
   image/gaussian image/local_contrast image/prefilter image/sparse_points image/texture
   stereo/byte_lanes_plain stereo/islands stereo/lanes_plain stereo/memory
   scene/floor_search scene/plane_fit scene/plane_through_pairs
   regions/gradient_threshold regions/growing_regions regions/percent regions/runs regions/superpixel_regions
   regions/split_floor regions/surfaces_behind
-  objects/object_match objects/obstacle_rows objects/ranks pipeline/match_and_check pipeline/methods pipeline/option_walk pipeline/scenes_ahead diagnosis/robust_fit
+  objects/ground_curvature objects/object_match objects/obstacle_rows objects/ranks pipeline/match_and_check pipeline/methods pipeline/option_walk pipeline/scenes_ahead
   sequence/assign sequence/changes sequence/kalman sequence/landmark_geometry sequence/motion_fit sequence/twist
   io/calibration_forms io/frame_names io/load_module io/raster io/read_file io/sha256 io/yaml_text
   device/careful_device device/engine device/module

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-/// Statistics that tolerate many false values. Internal to the diagnosis.
+/// Statistics that tolerate many false values. Private to the library.
 namespace cairn {
 
 /// The quantile at `share`, 0 … 1; NaN without values.

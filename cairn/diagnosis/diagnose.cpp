@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
+#include <cairn/core/robust_fit.hpp>
 #include <cairn/diagnosis/diagnose.hpp>
-#include <cairn/diagnosis/robust_fit.hpp>
 #include <cmath>
 #include <cstdio>
 #include <tuple>

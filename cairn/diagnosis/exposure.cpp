@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
 #include <array>
+#include <cairn/core/robust_fit.hpp>
 #include <cairn/diagnosis/exposure.hpp>
-#include <cairn/diagnosis/robust_fit.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/core/robust_fit.hpp>
 #include <cairn/diagnosis/correspondences.hpp>
 #include <cairn/diagnosis/given_disparity.hpp>
-#include <cairn/diagnosis/robust_fit.hpp>
 #include <cairn/diagnosis/row_alignment.hpp>
 #include <cmath>
 #include <cstdio>

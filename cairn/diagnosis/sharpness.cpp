@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <algorithm>
-#include <cairn/diagnosis/robust_fit.hpp>
+#include <cairn/core/robust_fit.hpp>
 #include <cairn/diagnosis/sharpness.hpp>
 #include <cstdlib>
 #include <vector>

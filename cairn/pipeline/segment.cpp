@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <cairn/objects/ground_curvature.hpp>
 #include <cairn/pipeline/methods.hpp>
 #include <cairn/stereo/confidence.hpp>
 #include <cmath>
@@ -8,10 +9,13 @@
 
 namespace cairn {
 
-Image<float> obstacle_disparities(const Frame& frame) {
+namespace {
+
+/// With other disparities in place of the frame's own.
+Image<float> obstacles_at(const DisparityMap& disparity, const Frame& frame) {
   const Background none;
   return obstacle_disparities(frame.space,
-                              {frame.disparity,
+                              {disparity,
                                {},
                                frame.confidence,
                                frame.ground,
@@ -21,6 +25,12 @@ Image<float> obstacle_disparities(const Frame& frame) {
                                frame.refined.disparity_px,
                                frame.refined.confidence},
                               {});
+}
+
+}  // namespace
+
+Image<float> obstacle_disparities(const Frame& frame) {
+  return obstacles_at(frame.disparity, frame);
 }
 
 ObstacleScan scan_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
@@ -36,7 +46,12 @@ std::vector<GroundStep> find_steps(const Frame& frame, const FloorFrame& floor, 
 
 ObstacleGrid map_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
                            const ObstaclesConfig& config) {
-  const Image<float> disparity_px = obstacle_disparities(frame);
+  DisparityMap flat{frame.disparity.disparity_px.clone(), {}};
+  // Where the ground curves away from its plane, it is free, too.
+  if (frame.ground.plane)
+    flat.disparity_px =
+        without_curvature(std::move(flat.disparity_px), frame.space, *frame.ground.plane, rig);
+  const Image<float> disparity_px = obstacles_at(flat, frame);
   ObstacleGrid grid = map_obstacles(frame.space, disparity_px, floor, rig, config);
   add_steps(grid, find_steps(frame, floor, rig, config));
   return grid;
