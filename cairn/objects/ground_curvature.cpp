@@ -65,7 +65,8 @@ Image<float> without_curvature(Image<float> disparity_px, View<const ObstacleLab
     for (int x = 0; x < space.width(); x += step) {
       const double plane_px = ground.plane_px(x, y);
       const double off_px = ground.off_px(disparity_px(x, y), plane_px);
-      if (space(x, y) == ObstacleLabel::floor && QuadraticGround::is_seen(plane_px) && std::abs(off_px) <= kFarthestOff)
+      if (space(x, y) == ObstacleLabel::floor && QuadraticGround::is_seen(plane_px) &&
+          std::abs(off_px) <= kFarthestOff)
         floor.push_back({ground.terms(x, plane_px), off_px});
     }
   }

@@ -63,7 +63,7 @@ struct Config {
   IntensityConfig intensity;
   DisparityConfig disparity;
   SuperpixelsConfig superpixels;
-  ObjectsConfig objects{.min_area = 0.25F, .min_confidence = 0.35F};
+  ObjectsConfig objects{.min_confidence = 0.35F};
   ObstaclesConfig obstacles;
 
   /// The method of the paper; the thresholds are ours, fitted by lab/search_paper.cpp.

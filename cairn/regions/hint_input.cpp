@@ -18,7 +18,9 @@ using namespace kernels;
 
 constexpr int kGrain = 4;    // rows
 constexpr int kMinSide = 8;  // cells
-constexpr double kCells = 160.0 * 120;
+constexpr double kFewestCells = 160.0 * 120;
+constexpr double kMostCells = 240.0 * 180;
+constexpr double kPixels = 4;  // of a cell, between these limits
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 enum Channel : int {
@@ -213,10 +215,12 @@ double nearest_px(View<const double> disparities) {
 
 Size hint_cells(Size image) {
   const double ratio = static_cast<double>(image.width) / image.height;
-  const double width = std::sqrt(kCells * ratio);
-  const auto rounded = [](double cells) {
-    constexpr double kMax = 1024;  // cells of a very long image
-    return std::max(1, static_cast<int>(std::lround(std::min(cells, kMax) / kMinSide))) * kMinSide;
+  const double cells = static_cast<double>(image.area()) / kPixels;
+  const double width = std::sqrt(std::clamp(cells, kFewestCells, kMostCells) * ratio);
+  const auto rounded = [](double side) {
+    constexpr double kMax = 1024;        // cells of a very long image
+    constexpr double kTie = 0.5 + 1e-6;  // whatever the last bit of the square root is
+    return std::max(1, static_cast<int>(std::min(side, kMax) / kMinSide + kTie)) * kMinSide;
   };
   return {rounded(width), rounded(width / ratio)};
 }

@@ -9,6 +9,7 @@
 #include <cairn/regions/convolution_kernels.hpp>
 #include <cairn/regions/framed_image.hpp>
 #include <cairn/regions/object_hints.hpp>
+#include <string>
 #include <vector>
 
 namespace cairn {
@@ -160,6 +161,11 @@ HintNetwork::HintNetwork(std::span<const HintLayer> layers, std::span<const std:
                            .transformed_weights{count_of_transformed(layers), Pool()},
                            .bias{bias.begin(), bias.end()},
                            .scale{scale.begin(), scale.end()}}) {
+  for (const HintLayer& l : layers) {
+    if (l.outputs > kernels::kMaxOutputs)
+      throw Error("a layer of the network has " + std::to_string(l.outputs) + " outputs, at most " +
+                  std::to_string(kernels::kMaxOutputs) + " are computed");
+  }
   Numbers& own = *numbers_;
   std::size_t weight = 0;
   std::size_t output = 0;
@@ -199,17 +205,19 @@ HintNetwork load_network(std::span<const std::byte> file) {
   const auto numbers = reader.next<std::int32_t>();
   std::vector<HintLayer> layers;
   std::size_t count = 0;
+  std::size_t outputs = 0;
   for (std::size_t i = 0; i + 5 <= numbers.size(); i += 5) {
     layers.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3], numbers[i + 4]});
     count += layers.back().weights();
+    outputs += slot(layers.back().outputs);
   }
   const auto weights = reader.next<std::int8_t>();
-  const bool fits =
-      std::ranges::all_of(layers, [](const HintLayer& l) { return l.outputs <= kernels::kMaxOutputs; });
-  if (layers.size() != kHintLayers || weights.size() != count || !fits)
-    throw Error("the fitted network has other layers than the library");
   const auto bias = reader.next<std::int32_t>();
-  return {layers, weights, bias, reader.next<float>()};
+  const auto scale = reader.next<float>();
+  if (layers.size() != kHintLayers || weights.size() != count || bias.size() != outputs ||
+      scale.size() != outputs)
+    throw Error("the fitted network has other layers than the library");
+  return {layers, weights, bias, scale};
 }
 
 const HintNetwork& hint_network() {

@@ -28,7 +28,8 @@ struct ObjectHint {
   friend bool operator==(const ObjectHint&, const ObjectHint&) = default;
 };
 
-/// About 160×120 cells, in the image's proportions, multiples of 8 in both directions.
+/// Cells of four pixels, but about 160×120 of them at least and 240×180 at most, in the image's proportions, multiples of
+/// 8 in both directions.
 Size hint_cells(Size image);
 
 /// The number of input channels of a cell: brightness, colour, disparity, distance from ground and background,
@@ -51,7 +52,8 @@ inline constexpr std::size_t kHintLayers = 17;
 class HintNetwork {
  public:
   /// `weights`: per layer [row][column][input][output]; `bias` and `scale`: per layer [output]. Copied.
-  /// Precondition: their sizes match `layers`; only the last layer has a negative `least`.
+  /// Throws Error for a layer with more outputs than the kernels compute. Precondition: the sizes match `layers`; only
+  /// the last layer has a negative `least`.
   HintNetwork(std::span<const HintLayer> layers, std::span<const std::int8_t> weights,
               std::span<const std::int32_t> bias, std::span<const float> scale);
   HintNetwork(HintNetwork&&) noexcept;

@@ -488,10 +488,9 @@ void list_object_features(const RegionSide& region, std::span<const Neighbour> n
   out("hints: object, largest of the neighbours", known(frame.has_hints && !alone, around.most_object));
   out("hints: spread of the votes, relative", known(votes.any, votes.spread / std::sqrt(cells + 1)));
   out("hints: its centroid from that of its votes, relative",
-      known(votes.any,
-            distance(static_cast<double>(r.x) / area * frame.cells_across / frame.width - votes.x,
-                     static_cast<double>(r.y) / area * frame.cells_across / frame.width - votes.y) /
-                std::sqrt(cells + 1)));
+      known(votes.any, distance(static_cast<double>(r.x) / area * frame.cells_across / frame.width - votes.x,
+                                static_cast<double>(r.y) / area * frame.cells_down / frame.height - votes.y) /
+                           std::sqrt(cells + 1)));
   out("hints: area over the voted size", known(votes.any, log2_of(cells + 1) - votes.size));
   out("hints: centroids around it, relative",
       known(around.centroids_length > 0, around.centroids / around.centroids_length / std::sqrt(cells + 1)));
@@ -539,6 +538,7 @@ FrameCues frame_cues(const RegionGraphCues& graph, const Cues& cues) {
   frame.cells_per_px =
       static_cast<double>(cues.hints.size().area()) / static_cast<double>(cues.left.gray.size().area());
   frame.cells_across = cues.hints.width();
+  frame.cells_down = cues.hints.height();
   std::int64_t matched = 0;
   std::int64_t textured = 0;
   for (const RegionCues& region : graph.regions) {

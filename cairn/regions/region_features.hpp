@@ -55,6 +55,7 @@ struct FrameCues {
   bool has_hints = false;
   double cells_per_px = 0;  // of the hints
   int cells_across = 0;
+  int cells_down = 0;
   int walls_and_floor = 0;
   float noise_sigma = 0;
   float matched_share = 0;

@@ -18,16 +18,18 @@
 namespace cairn {
 namespace {
 
-constexpr int kGrain = 16;            // rows
-constexpr float kSmoothing = 0.7F;    // px
-constexpr float kStepWeight = 8.0F;   // 1/4 grey level for each px of a step of disparity
-constexpr float kLargestStep = 4.0F;  // px
-constexpr float kFlat = 4.0F;         // 1/4 grey level; weaker edges are ignored …
-constexpr float kFlatInNoise = 4.0F;  // … and this much more per grey level of noise
-constexpr int kMinCells = 1600;       // per superpixel, to be halved
-constexpr int kOutlineGain = 4;       // of the edges where the network is sure of an outline …
-constexpr int kOutlineStep = 32;      // … and 1/4 grey levels added
-constexpr int kStrongest = 65000;     // steps of disparity are added to it
+constexpr int kGrain = 16;                       // rows
+constexpr float kSmoothing = 0.7F;               // px
+constexpr float kStepWeight = 8.0F;              // 1/4 grey level for each px of a step of disparity
+constexpr float kLargestStep = 4.0F;             // px
+constexpr float kFlat = 4.0F;                    // 1/4 grey level; weaker edges are ignored …
+constexpr float kFlatInNoise = 4.0F;             // … and this much more per grey level of noise
+constexpr std::int64_t kSmallImage = 320 * 240;  // px: for SuperpixelsConfig::count …
+constexpr std::int64_t kLargeImage = 480 * 360;  // … and for as many more as are useful
+constexpr int kMinCells = 1600;                  // per superpixel, to be halved
+constexpr int kOutlineGain = 4;                  // of the edges where the network is sure of an outline …
+constexpr int kOutlineStep = 32;                 // … and 1/4 grey levels added
+constexpr int kStrongest = 65000;                // steps of disparity are added to it
 
 /// How far from the last cell's centre to the next one's a pixel is, in 1/256. Cells beyond the border are those at it.
 struct Between {
@@ -108,6 +110,11 @@ Image<std::uint16_t> halved(View<const std::uint16_t> edges, const Exec& exec) {
 
 }  // namespace
 
+int most_superpixels(Size image, const SuperpixelsConfig& config) {
+  const std::int64_t area = std::clamp(image.area(), kSmallImage, kLargeImage);
+  return static_cast<int>(config.count * area / kSmallImage);
+}
+
 Image<std::uint16_t> superpixel_edges(const LeftImage& left, const Exec& exec) {
   return edge_strength(left.gray, left.rgb, kSmoothing, exec);
 }
@@ -123,9 +130,9 @@ Superpixels cut_superpixels(Image<std::uint16_t> edges, View<const ObjectHint> h
     const Image<std::uint16_t> stronger = with_outlines(edges, hints, exec);
     levels.push_back(with_steps(stronger, disparity_px, noise_sigma, exec));
   }
-  while (levels.back().size().area() / config.count >= kMinCells)
-    levels.push_back(halved(levels.back(), exec));
-  Basins basins = fuse_basins(watershed(levels.back(), exec), levels.back(), config.count, exec);
+  const int most = most_superpixels(edges.size(), config);
+  while (levels.back().size().area() / most >= kMinCells) levels.push_back(halved(levels.back(), exec));
+  Basins basins = fuse_basins(watershed(levels.back(), exec), levels.back(), most, exec);
   for (std::size_t level = levels.size() - 1; level-- > 0;)
     basins.labels = refine_outlines(basins.labels, levels[level], exec);
   return {std::move(basins.labels), basins.count, std::move(edges)};

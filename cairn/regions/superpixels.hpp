@@ -16,12 +16,13 @@ namespace cairn {
 struct ObjectHint;
 
 struct SuperpixelsConfig {
-  int count = 150;  // superpixels; more follow small objects, and take longer
+  int count = 150;  // superpixels of 320×240 px; more follow small objects, and take longer
 };
 template <class V>
 void fields(SuperpixelsConfig& c, V&& v) {
-  v("count", c.count, "", "largest number of superpixels; more for small objects, but slower",
-    range(1, 100000), when("pipeline.method", "region_tree"));
+  v("count", c.count, "",
+    "largest number of superpixels of 320x240 pixels; more for small objects, but slower", range(1, 100000),
+    when("pipeline.method", "region_tree"));
 }
 
 /// Connected pieces of the image without a clear edge of brightness, colour or depth inside.
@@ -30,6 +31,10 @@ struct Superpixels {
   int count = 0;
   Image<std::uint16_t> edges;  // superpixel_edges(), in 1/4 grey level
 };
+
+/// The largest number of superpixels of an image: config.count up to 320×240 pixels, in proportion to the pixels up to
+/// 480×360, and 2.25 · config.count from there on.
+int most_superpixels(Size image, const SuperpixelsConfig& config);
 
 /// How likely an outline is, 0 … 256, from its log-odds in 1/16: 0 up to −2, 256 from 2 on, straight in between.
 constexpr int outline_share(int log_odds) {
@@ -46,7 +51,7 @@ constexpr int outline_share(int log_odds) {
 ///
 ///     (mean edge along the common border + 1/2 grey level) · sqrt(area of the smaller one)
 ///
-/// until `count` are left: small and similar ones first. The edge (or pass) between two pixels is the stronger one of
+/// until most_superpixels() are left: small and similar ones first. The edge (or pass) between two pixels is the stronger one of
 /// theirs, depth included. Ties: the border that occurs first, row by row, from each pixel to the right before down.
 ///
 /// If the edges were halved, labels are doubled again as often, and outlines moved after each time, twice by at most

@@ -199,7 +199,8 @@ def cut_superpixels(left: ImageLike, disparity: DisparityLike, noise_sigma: floa
                     hints: HintsLike = None) -> Superpixels:
     """Segments the image into superpixels: connected pieces without a clear edge of brightness, colour (if
     there is colour) or disparity inside. noise_sigma: from noise_sigma(). hints: from hint_objects(); the
-    superpixels then follow the outlines that it expects."""
+    superpixels then follow the outlines that it expects. superpixels.count is their number in 320x240 pixels; larger
+    images have up to 2.25 times as many."""
 
 
 def superpixel_regions(superpixels: Superpixels, left: ImageLike) -> Segmentation:
@@ -209,7 +210,7 @@ def superpixel_regions(superpixels: Superpixels, left: ImageLike) -> Segmentatio
 def hint_objects(left: ImageLike, disparity: DisparityLike, textured_px: DisparitiesLike, ground: Ground,
                  background: Background, noise_sigma: float) -> NDArray[numpy.int16]:
     """Estimates of a small neural network, used by cut_superpixels() and grow_merge_tree(): (rows, columns, 5) int16 for
-    cells of about 2x2 pixels of a 320x240 image. The channels are: log-odds in 1/16 that the cell shows an object, and
+    about 160x120 to 240x180 cells, of 2x2 pixels in an image of 320x240. The channels are: log-odds in 1/16 that the cell shows an object, and
     that the outline of an object passes; offset to the centroid of the object, x and y in 1/8 cell; log2 of its number
     of cells in 1/16."""
 

@@ -203,9 +203,9 @@ def test_a_better_option_is_reported_or_set(pairs, rig):
         steps = [follower.next(left, right, seconds=0.1 * i) for i in range(40)]
         step = next(step for step in steps if step.control)
         found = step.control
-        assert (found["option"], found["before"], found["value"]) == ("objects.min_area", "60", "0.25")
+        assert (found["option"], found["before"], found["value"]) == ("objects.min_area", "60", "0.1")
         assert found["lead"] > 1 and found["is_set"] == (method == "tune")
-        assert follower["objects.min_area"] == ("0.25" if method == "tune" else "60")
+        assert follower["objects.min_area"] == ("0.1" if method == "tune" else "60")
         assert pickle.loads(pickle.dumps(step)).control == found
     assert steps[0].control is None
 

@@ -325,7 +325,7 @@ TEST_F(Follow, TuningSetsABetterOption) {
   EXPECT_EQ(events[0]["kind"], "option_set");
   EXPECT_EQ(events[0]["option"], "objects.min_area");
   EXPECT_EQ(events[0]["from"], "60");
-  EXPECT_NE(outcome.err.find("objects.min_area=0.25, set (was 60)"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("objects.min_area=0.1, set (was 60)"), std::string::npos) << outcome.err;
   const std::vector<Json> lines = lines_of(at("tuned/tracks.jsonl"));
   EXPECT_EQ(lines.front()["objects"], 0);
   EXPECT_GT(lines.back()["objects"], 0);

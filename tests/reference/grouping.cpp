@@ -397,6 +397,7 @@ FrameCues frame_cues(const Superpixels& superpixels, const Cues& cues) {
           .cells_per_px = static_cast<double>(cues.hints.size().area()) /
                           static_cast<double>(cues.left.gray.size().area()),
           .cells_across = cues.hints.width(),
+          .cells_down = cues.hints.height(),
           .walls_and_floor = static_cast<int>(cues.background.planes.size()),
           .noise_sigma = cues.left.noise_sigma,
           .matched_share = share(seen.matched),

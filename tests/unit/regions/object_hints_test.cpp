@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cairn/core/error.hpp>
 #include <cairn/regions/merge_tree.hpp>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "support/region_scene.hpp"
 
@@ -19,11 +21,22 @@ using support::RegionScene;
 
 TEST(HintCells, HaveTheImagesProportionsWhateverItsSize) {
   EXPECT_EQ(hint_cells({320, 240}), (Size{160, 120}));
-  EXPECT_EQ(hint_cells({1280, 960}), (Size{160, 120}));
-  EXPECT_EQ(hint_cells({1242, 375}), (Size{256, 80}));
+  EXPECT_EQ(hint_cells({160, 120}), (Size{160, 120}));
+  EXPECT_EQ(hint_cells({424, 240}), (Size{216, 120}));
+  EXPECT_EQ(hint_cells({640, 480}), (Size{240, 184}));
+  EXPECT_EQ(hint_cells({1280, 960}), (Size{240, 184}));
+  EXPECT_EQ(hint_cells({1242, 375}), (Size{376, 112}));
   EXPECT_EQ(hint_cells({1, 1}), (Size{136, 136}));
   EXPECT_EQ(hint_cells({30000, 1}), (Size{1024, 8}));
   EXPECT_EQ(hint_cells({1, 30000}), (Size{8, 1024}));
+}
+
+TEST(HintNetwork, RefusesMoreOutputsThanTheKernelsCompute) {
+  const std::vector<HintLayer> layers(kHintLayers, {8, 120});
+  const std::vector<std::int8_t> weights(kHintLayers * layers.front().weights());
+  const std::vector<std::int32_t> bias(kHintLayers * 120);
+  const std::vector<float> scale(bias.size(), 1.0F);
+  EXPECT_THROW(HintNetwork(layers, weights, bias, scale), Error);
 }
 
 /// A plane at 10 px left, and a nearer one at 20 px right, without a floor or walls.

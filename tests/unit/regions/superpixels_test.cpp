@@ -129,6 +129,17 @@ void expect_connected(const Superpixels& superpixels) {
   }
 }
 
+TEST(Superpixels, AreMoreInLargerImages) {
+  EXPECT_EQ(most_superpixels({320, 240}, {150}), 150);
+  EXPECT_EQ(most_superpixels({400, 300}, {150}), 234);
+  EXPECT_EQ(most_superpixels({640, 480}, {150}), 337);
+  EXPECT_EQ(most_superpixels({3840, 2160}, {100000}), 225000);
+  EXPECT_EQ(most_superpixels({1, 1}, {1}), 1);
+  const Superpixels many = cut(random_image<Gray>({640, 480}, 0, 255, 3), 10);
+  EXPECT_EQ(many.count, 22);
+  expect_connected(many);
+}
+
 TEST(Superpixels, AreConnectedAndNumberedInRasterOrder) {
   const Image<Gray> gray = random_image<Gray>({40, 30}, 0, 255, 3);
   const Superpixels superpixels = cut(gray, 25, 7.0F);
