@@ -48,9 +48,10 @@ ObstacleGrid map_obstacles(const Frame& frame, const FloorFrame& floor, const St
                            const ObstaclesConfig& config) {
   DisparityMap flat{frame.disparity.disparity_px.clone(), {}};
   // Where the ground curves away from its plane, it is free, too.
-  if (frame.ground.plane)
+  if (frame.ground.plane) {
     flat.disparity_px =
         without_curvature(std::move(flat.disparity_px), frame.space, *frame.ground.plane, rig);
+  }
   const Image<float> disparity_px = obstacles_at(flat, frame);
   ObstacleGrid grid = map_obstacles(frame.space, disparity_px, floor, rig, config);
   add_steps(grid, find_steps(frame, floor, rig, config));

@@ -162,9 +162,10 @@ HintNetwork::HintNetwork(std::span<const HintLayer> layers, std::span<const std:
                            .bias{bias.begin(), bias.end()},
                            .scale{scale.begin(), scale.end()}}) {
   for (const HintLayer& l : layers) {
-    if (l.outputs > kernels::kMaxOutputs)
+    if (l.outputs > kernels::kMaxOutputs) {
       throw Error("a layer of the network has " + std::to_string(l.outputs) + " outputs, at most " +
                   std::to_string(kernels::kMaxOutputs) + " are computed");
+    }
   }
   Numbers& own = *numbers_;
   std::size_t weight = 0;
