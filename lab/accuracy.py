@@ -25,6 +25,7 @@ import numpy as np
 
 import cairn
 import report
+from fit import LARGER
 from report import number, percent, table
 
 COLOURS = {"paper": "#888888", "default": "#d1495b"}
@@ -73,7 +74,6 @@ MIDDLEBURY = [f"real/middlebury{year}" for year in (2001, 2003, 2005, 2006, 2014
 FRAME_SETS = {"Rendered, 320x240": "rendered/dev/320x240", "Rendered, 640x480": "rendered/dev/640x480",
               "rc_tabletop, real, 640x480": "real/rc_tabletop"}
 YARDSTICK = pathlib.Path("build/fit/yardstick").resolve()  # made by ./dev worlds yardstick
-LARGER = ["621x188", "640x360", "640x480"]
 SPLITS = {  # folders, and what they are used for
     "train 320x240": (["rendered/train/320x240"], "fit"), "train_outdoor": (["rendered/train_outdoor/320x240"], "fit"),
     "train_outdoor, larger": ([f"rendered/train_outdoor/{size}" for size in LARGER], "fit"),

@@ -47,7 +47,7 @@ MIN_SCORE = "0.35"  # objects.min_confidence of the preset default
 SEED = 7
 MIDDLEBURY = ["2001/tsukuba", "2003/cones", "2003/teddy", "2005/Art", "2005/Laundry", "2005/Reindeer", "2006/Baby1",
               "2006/Lampshade1"]
-
+LARGER = ["621x188", "640x360", "640x480"]  # streets of other sizes than 320x240
 
 CUES = {  # by substrings of their features' names
     "colours and brightness": ("colour", "brightness"), "edges": ("edge",), "steps of disparity": ("step",),
@@ -72,7 +72,7 @@ def fit_sets(worlds, data, streets=None):
     if data:
         sets |= {name: frames_in(data / "rendered" / name / "320x240") for name in ("train", "train_outdoor")}
         sets |= {f"train_outdoor {size}": frames_in(data / "rendered/train_outdoor" / size)
-                 for size in ("621x188", "640x360", "640x480")}
+                 for size in LARGER}
         sets |= {f"dev {size}": frames_in(data / "rendered/dev" / size) for size in ("320x240", "640x480")}
     return sets
 

@@ -17,7 +17,7 @@ import numpy as np
 
 import cairn
 from accuracy import TrueFrame, share
-from fit import frames_in
+from fit import LARGER, frames_in
 from report import number, percent, table
 from studies import disparity_of, logistic
 
@@ -25,7 +25,7 @@ TRUSTED, NEAR_PX = 0.7, 2.0  # kTrusted and kNear_px there
 NEAR_BY = 12.0  # m
 DISTANCES = [0, 2, 4, 7, 12, np.inf]  # m
 FIT_WORLDS, RIDGE = 500, 1e-4
-SIZES = ["320x240", "621x188", "640x360", "640x480"]
+SIZES = ["320x240", *LARGER]
 
 
 class Seen(TrueFrame):

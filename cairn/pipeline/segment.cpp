@@ -3,6 +3,7 @@
 #include <cairn/core/error.hpp>
 #include <cairn/objects/ground_curvature.hpp>
 #include <cairn/pipeline/methods.hpp>
+#include <cairn/regions/percent.hpp>
 #include <cairn/stereo/confidence.hpp>
 #include <cmath>
 #include <utility>
@@ -46,12 +47,9 @@ std::vector<GroundStep> find_steps(const Frame& frame, const FloorFrame& floor, 
 
 ObstacleGrid map_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
                            const ObstaclesConfig& config) {
-  DisparityMap flat{frame.disparity.disparity_px.clone(), {}};
   // Where the ground curves away from its plane, it is free, too.
-  if (frame.ground.plane) {
-    flat.disparity_px =
-        without_curvature(std::move(flat.disparity_px), frame.space, *frame.ground.plane, rig);
-  }
+  const DisparityMap flat{
+      without_curvature(frame.disparity.disparity_px.clone(), frame.space, frame.ground, rig), {}};
   const Image<float> disparity_px = obstacles_at(flat, frame);
   ObstacleGrid grid = map_obstacles(frame.space, disparity_px, floor, rig, config);
   add_steps(grid, find_steps(frame, floor, rig, config));
@@ -59,9 +57,7 @@ ObstacleGrid map_obstacles(const Frame& frame, const FloorFrame& floor, const St
 }
 
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image) {
-  // Rounded up, so that an area of exactly min_area per cent suffices.
-  const double least = std::ceil(static_cast<double>(image.area()) * double{config.min_area} / 100);
-  return {config.min_confidence, static_cast<std::int64_t>(least)};
+  return {config.min_confidence, pixels_in(config.min_area, image)};
 }
 
 namespace {

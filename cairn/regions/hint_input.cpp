@@ -6,6 +6,7 @@
 #include <cairn/regions/framed_image.hpp>
 #include <cairn/regions/hint_kernels.hpp>
 #include <cairn/regions/object_hints.hpp>
+#include <cairn/regions/percent.hpp>
 #include <cairn/regions/surfaces_behind.hpp>
 #include <cmath>
 #include <limits>
@@ -16,11 +17,9 @@ namespace {
 
 using namespace kernels;
 
-constexpr int kGrain = 4;    // rows
-constexpr int kMinSide = 8;  // cells
-constexpr double kFewestCells = 160.0 * 120;
-constexpr double kMostCells = 240.0 * 180;
-constexpr double kPixels = 4;  // of a cell, between these limits
+constexpr int kGrain = 4;      // rows
+constexpr int kMinSide = 8;    // cells
+constexpr double kPixels = 4;  // of a cell
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 enum Channel : int {
@@ -215,8 +214,7 @@ double nearest_px(View<const double> disparities) {
 
 Size hint_cells(Size image) {
   const double ratio = static_cast<double>(image.width) / image.height;
-  const double cells = static_cast<double>(image.area()) / kPixels;
-  const double width = std::sqrt(std::clamp(cells, kFewestCells, kMostCells) * ratio);
+  const double width = std::sqrt(static_cast<double>(pixels_of_detail(image)) / kPixels * ratio);
   const auto rounded = [](double side) {
     constexpr double kMax = 1024;        // cells of a very long image
     constexpr double kTie = 0.5 + 1e-6;  // whatever the last bit of the square root is

@@ -6,6 +6,7 @@
 #include <cairn/regions/cue_kernels.hpp>
 #include <cairn/regions/fuse_basins.hpp>
 #include <cairn/regions/object_hints.hpp>
+#include <cairn/regions/percent.hpp>
 #include <cairn/regions/refine_outlines.hpp>
 #include <cairn/regions/superpixel_regions.hpp>
 #include <cairn/regions/superpixels.hpp>
@@ -18,18 +19,16 @@
 namespace cairn {
 namespace {
 
-constexpr int kGrain = 16;                       // rows
-constexpr float kSmoothing = 0.7F;               // px
-constexpr float kStepWeight = 8.0F;              // 1/4 grey level for each px of a step of disparity
-constexpr float kLargestStep = 4.0F;             // px
-constexpr float kFlat = 4.0F;                    // 1/4 grey level; weaker edges are ignored …
-constexpr float kFlatInNoise = 4.0F;             // … and this much more per grey level of noise
-constexpr std::int64_t kSmallImage = 320 * 240;  // px: for SuperpixelsConfig::count …
-constexpr std::int64_t kLargeImage = 480 * 360;  // … and for as many more as are useful
-constexpr int kMinCells = 1600;                  // per superpixel, to be halved
-constexpr int kOutlineGain = 4;                  // of the edges where the network is sure of an outline …
-constexpr int kOutlineStep = 32;                 // … and 1/4 grey levels added
-constexpr int kStrongest = 65000;                // steps of disparity are added to it
+constexpr int kGrain = 16;            // rows
+constexpr float kSmoothing = 0.7F;    // px
+constexpr float kStepWeight = 8.0F;   // 1/4 grey level for each px of a step of disparity
+constexpr float kLargestStep = 4.0F;  // px
+constexpr float kFlat = 4.0F;         // 1/4 grey level; weaker edges are ignored …
+constexpr float kFlatInNoise = 4.0F;  // … and this much more per grey level of noise
+constexpr int kMinCells = 1600;       // per superpixel, to be halved
+constexpr int kOutlineGain = 4;       // of the edges where the network is sure of an outline …
+constexpr int kOutlineStep = 32;      // … and 1/4 grey levels added
+constexpr int kStrongest = 65000;     // steps of disparity are added to it
 
 /// How far from the last cell's centre to the next one's a pixel is, in 1/256. Cells beyond the border are those at it.
 struct Between {
@@ -111,8 +110,7 @@ Image<std::uint16_t> halved(View<const std::uint16_t> edges, const Exec& exec) {
 }  // namespace
 
 int most_superpixels(Size image, const SuperpixelsConfig& config) {
-  const std::int64_t area = std::clamp(image.area(), kSmallImage, kLargeImage);
-  return static_cast<int>(config.count * area / kSmallImage);
+  return static_cast<int>(config.count * pixels_of_detail(image) / pixels_of_detail({320, 240}));
 }
 
 Image<std::uint16_t> superpixel_edges(const LeftImage& left, const Exec& exec) {

@@ -51,8 +51,8 @@ constexpr int outline_share(int log_odds) {
 ///
 ///     (mean edge along the common border + 1/2 grey level) · sqrt(area of the smaller one)
 ///
-/// until most_superpixels() are left: small and similar ones first. The edge (or pass) between two pixels is the stronger one of
-/// theirs, depth included. Ties: the border that occurs first, row by row, from each pixel to the right before down.
+/// until most_superpixels() are left: small and similar ones first. The edge (or pass) between two pixels is the stronger
+/// one of theirs, depth included. Ties: the border that occurs first, row by row, from each pixel to the right before down.
 ///
 /// If the edges were halved, labels are doubled again as often, and outlines moved after each time, twice by at most
 /// one pixel: a pixel goes over to the superpixel of a neighbour if the opposite neighbour, of its own superpixel, is a

@@ -210,9 +210,9 @@ def superpixel_regions(superpixels: Superpixels, left: ImageLike) -> Segmentatio
 def hint_objects(left: ImageLike, disparity: DisparityLike, textured_px: DisparitiesLike, ground: Ground,
                  background: Background, noise_sigma: float) -> NDArray[numpy.int16]:
     """Estimates of a small neural network, used by cut_superpixels() and grow_merge_tree(): (rows, columns, 5) int16 for
-    about 160x120 to 240x180 cells, of 2x2 pixels in an image of 320x240. The channels are: log-odds in 1/16 that the cell shows an object, and
-    that the outline of an object passes; offset to the centroid of the object, x and y in 1/8 cell; log2 of its number
-    of cells in 1/16."""
+    about 160x120 to 240x180 cells, of 2x2 pixels in an image of 320x240. The channels are: log-odds in 1/16 that the
+    cell shows an object, and that the outline of an object passes; offset to the centroid of the object, x and y in 1/8
+    cell; log2 of its number of cells in 1/16."""
 
 
 def grow_merge_tree(superpixels: Superpixels, left: ImageLike, disparity: DisparityLike, textured_px: DisparitiesLike,

@@ -16,9 +16,11 @@ constexpr Size kSize{320, 120};
 constexpr StereoRig kRig{.focal_px = 300, .cx_px = 160, .cy_px = 20, .baseline_m = 0.5F, .doffs_px = 2};
 constexpr float kHeight = 1.5F;  // m, of the camera, which looks ahead
 
-/// 100 px per row over the focal length, from infinity at row 20.
+/// Baseline over height, in px per row, from infinity at row 20.
 constexpr GroundPlane kPlane{0, kRig.baseline_m / kHeight,
                              -kRig.cy_px* kRig.baseline_m / kHeight - kRig.doffs_px};
+
+const Ground kGround{.plane = kPlane};
 
 /// The ground as seen if its height, in m, is `height(ahead, to the right)`; by search along the ray.
 template <class Height>
@@ -63,17 +65,17 @@ double share_on_plane(const Image<float>& disparity_px) {
 TEST(GroundCurvature, OfAFlatGroundChangesNoBit) {
   const Image<float> flat = seen_ground([](float, float) { return 0.0F; });
   EXPECT_GT(share_on_plane(flat), 0.99);
-  EXPECT_TRUE(have_the_same_bits(without_curvature(flat.clone(), all_floor(), kPlane, kRig), flat));
+  EXPECT_TRUE(have_the_same_bits(without_curvature(flat.clone(), all_floor(), kGround, kRig), flat));
 }
 
 TEST(GroundCurvature, TakesASlopeAheadAndABankAway) {
   const Image<float> curved =
       seen_ground([](float ahead, float right) { return 0.001F * ahead * ahead - 0.0015F * ahead * right; });
   EXPECT_LT(share_on_plane(curved), 0.4);
-  EXPECT_GT(share_on_plane(without_curvature(curved.clone(), all_floor(), kPlane, kRig)), 0.95);
+  EXPECT_GT(share_on_plane(without_curvature(curved.clone(), all_floor(), kGround, kRig)), 0.95);
   const Image<float> downhill = seen_ground([](float ahead, float) { return -0.001F * ahead * ahead; });
   EXPECT_LT(share_on_plane(downhill), 0.2);
-  EXPECT_GT(share_on_plane(without_curvature(downhill.clone(), all_floor(), kPlane, kRig)), 0.75);
+  EXPECT_GT(share_on_plane(without_curvature(downhill.clone(), all_floor(), kGround, kRig)), 0.75);
 }
 
 TEST(GroundCurvature, IsThatOfMostOfTheFloorAndLeavesOtherLabelsAlone) {
@@ -85,7 +87,7 @@ TEST(GroundCurvature, IsThatOfMostOfTheFloorAndLeavesOtherLabelsAlone) {
       if (x < 140) space(x, y) = ObstacleLabel::obstacle;  // … and half of that no floor
     }
   }
-  const Image<float> flat = without_curvature(curved.clone(), space, kPlane, kRig);
+  const Image<float> flat = without_curvature(curved.clone(), space, kGround, kRig);
   EXPECT_EQ(flat(120, 80), curved(120, 80));
   EXPECT_NEAR(flat(250, 80), kPlane.disparity_px(250, 80), 0.4);
   EXPECT_NEAR(flat(160, 80), kPlane.disparity_px(160, 80) + 3, 0.4);
@@ -94,8 +96,9 @@ TEST(GroundCurvature, IsThatOfMostOfTheFloorAndLeavesOtherLabelsAlone) {
 TEST(GroundCurvature, OfTooLittleFloorIsNone) {
   const Image<float> curved = seen_ground([](float ahead, float) { return 0.001F * ahead * ahead; });
   Image<ObstacleLabel> space(kSize, ObstacleLabel::unknown, {});
-  EXPECT_TRUE(have_the_same_bits(without_curvature(curved.clone(), space, kPlane, kRig), curved));
-  EXPECT_TRUE(without_curvature({}, {}, kPlane, kRig).empty());
+  EXPECT_TRUE(have_the_same_bits(without_curvature(curved.clone(), space, kGround, kRig), curved));
+  EXPECT_TRUE(have_the_same_bits(without_curvature(curved.clone(), all_floor(), {}, kRig), curved));
+  EXPECT_TRUE(without_curvature({}, {}, kGround, kRig).empty());
 }
 
 TEST(GroundCurvature, IsFreeInTheGridOfAFrame) {
