@@ -139,10 +139,11 @@ void brighten(Image<Rgb>& canvas, float factor) {
 }
 
 constexpr Rgb kFloorTint{90, 150, 190};
+constexpr Rgb kStep{255, 210, 60};
 constexpr int kStripHeight = 24;
 
 /// The image with a colour legend below it.
-Image<Rgb> with_legend(Image<Rgb> picture, bool in_metres, bool has_floor, float brightened) {
+Image<Rgb> with_legend(Image<Rgb> picture, bool in_metres, bool has_floor, bool has_steps, float brightened) {
   constexpr int kGap = 18;
   Image<Rgb> whole({picture.width(), picture.height() + kStripHeight}, Rgb{15, 15, 15}, {});
   for (int y = 0; y < picture.height(); ++y) std::copy_n(picture.row(y), picture.width(), whole.row(y));
@@ -159,6 +160,7 @@ Image<Rgb> with_legend(Image<Rgb> picture, bool in_metres, bool has_floor, float
   };
   entry(object_colour(ObjectId{1}), std::string("object, id: ") + (in_metres ? "distance" : "disparity"));
   if (has_floor) entry(kFloorTint, "floor");
+  if (has_steps) entry(kStep, "step of the ground: height");
   entry(Rgb{110, 110, 110}, "no object");
   if (brightened > 1) entry(std::nullopt, "brightened " + number_text("%.1f x", brightened));
   return whole;
@@ -186,6 +188,27 @@ void tint(Image<Rgb>& canvas, const Objects& objects, View<const std::uint8_t> f
           outline ? mixed(object_colour(id), {255, 255, 255}, 0.35F) : mixed(pixel, object_colour(id), 0.45F);
     }
   }
+}
+
+/// Draws the lines, and returns their labels.
+std::vector<Label> mark_steps(Image<Rgb>& canvas, const std::vector<DrawnStep>& steps, int factor) {
+  std::vector<Label> names;
+  for (const DrawnStep& step : steps) {
+    const auto on_canvas = [&](float x, float y) {
+      const auto whole = [&](float px) {
+        constexpr float kFar = 1e6F;  // px
+        return static_cast<int>(std::floor(std::clamp((px + 0.5F) * static_cast<float>(factor), -kFar, kFar)));
+      };
+      return drawing::Point{whole(x), whole(y)};
+    };
+    const drawing::Point from = on_canvas(step.from_x, step.from_y);
+    const drawing::Point to = on_canvas(step.to_x, step.to_y);
+    for (int below = 0; below < 2; ++below)
+      drawing::draw_line(canvas, {from.x, from.y + below}, {to.x, to.y + below}, kStep);
+    names.push_back(
+        label_at({(from.x + to.x) / 2, (from.y + to.y) / 2}, number_text("%+.0f cm", 100 * step.height_m)));
+  }
+  return names;
 }
 
 // ---- disparity ----
@@ -362,14 +385,28 @@ std::array<Rgb, 256> disparity_colours() {
   return colours;
 }
 
+std::vector<DrawnStep> drawn_steps(const std::vector<GroundStep>& steps, const FloorFrame& floor,
+                                   const StereoRig& rig) {
+  std::vector<DrawnStep> drawn;
+  for (const GroundStep& step : steps) {
+    const Vec3 from = floor.to_camera(step.from_m);
+    const Vec3 to = floor.to_camera(step.to_m);
+    // Steps are seen, so they are in front of the camera.
+    drawn.push_back({rig.cx_px + rig.focal_px * from.x / from.z, rig.cy_px + rig.focal_px * from.y / from.z,
+                     rig.cx_px + rig.focal_px * to.x / to.z, rig.cy_px + rig.focal_px * to.y / to.z,
+                     step.height_m});
+  }
+  return drawn;
+}
+
 Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const Objects& objects,
-                        View<const std::uint8_t> floor) {
+                        View<const std::uint8_t> floor, const std::vector<DrawnStep>& steps) {
   const int factor = enlargement(left.size());
   Image<Rgb> canvas = enlarged(left, left_rgb, factor);
   const float brightened = brightening(left);
   brighten(canvas, brightened);
   tint(canvas, objects, floor, factor);
-  std::vector<Label> names;
+  std::vector<Label> names = mark_steps(canvas, steps, factor);
   for (const Object& object : objects.list) {
     const std::string distance = object.position_in_camera_m
                                      ? number_text("%.2f m", object.position_in_camera_m->z)
@@ -384,7 +421,7 @@ Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const O
   const bool in_metres = std::any_of(objects.list.begin(), objects.list.end(), [](const Object& object) {
     return object.position_in_camera_m.has_value();
   });
-  return with_legend(std::move(canvas), in_metres, !floor.empty(), brightened);
+  return with_legend(std::move(canvas), in_metres, !floor.empty(), !steps.empty(), brightened);
 }
 
 Image<Rgb> draw_disparity(const DisparityMap& map, const std::optional<StereoRig>& rig, Reject in_force) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cairn/core/image.hpp>
 #include <cairn/core/stereo_pair.hpp>
+#include <cairn/objects/ground_steps.hpp>
 #include <cairn/objects/measure.hpp>
 #include <cairn/stereo/disparity_map.hpp>
 #include <cstdint>
@@ -14,11 +15,23 @@
 /// Images for viewing. Small frames are enlarged by an integer factor, so that labels stay legible.
 namespace cairn::output {
 
+/// A step of the ground as a line in the left image.
+struct DrawnStep {
+  float from_x = 0;  // px
+  float from_y = 0;
+  float to_x = 0;
+  float to_y = 0;
+  float height_m = 0;
+};
+std::vector<DrawnStep> drawn_steps(const std::vector<GroundStep>& steps, const FloorFrame& floor,
+                                   const StereoRig& rig);
+
 /// The left image, its background faded: every object tinted, outlined and labelled with its id and distance
-/// (in m; without a calibration its disparity in px), the floor (non-zero; may be empty) faintly tinted; with
-/// a legend below. A dark image is brightened, up to eightfold. `left_rgb` may be empty.
+/// (in m; without a calibration its disparity in px), the floor (non-zero; may be empty) faintly tinted, steps of the
+/// ground as lines labelled with their heights; with a legend below. A dark image is brightened, up to eightfold.
+/// `left_rgb` may be empty.
 Image<Rgb> draw_objects(View<const Gray> left, View<const Rgb> left_rgb, const Objects& objects,
-                        View<const std::uint8_t> floor);
+                        View<const std::uint8_t> floor, const std::vector<DrawnStep>& steps = {});
 
 /// Disparity in colours, holes in the muted colour of their reason, with a legend: the scale in px (with a
 /// rig, also in m), and the share of pixels per reason `in_force`. For several reasons, the first in the

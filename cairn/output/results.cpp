@@ -106,11 +106,21 @@ Json json(const RejectedObstacle& left) {
   return j;
 }
 
-/// null if no floor is known in metres.
-Json scan_json(const Frame& frame, const Provenance& provenance) {
+/// The floor and its steps.
+struct FloorWithSteps {
+  FloorFrame frame;
+  std::vector<GroundStep> steps;
+};
+
+/// nullopt if no floor is known in metres, or no obstacles.
+std::optional<FloorWithSteps> floor_with_steps(const Frame& frame, const Provenance& provenance) {
   const auto floor = floor_frame(frame.ground, provenance.rig);
-  if (!floor) return nullptr;
-  const ObstacleScan scan = scan_obstacles(frame, *floor, *provenance.rig, provenance.config.obstacles);
+  if (!floor || frame.space.empty()) return std::nullopt;
+  return FloorWithSteps{*floor, find_steps(frame, *floor, *provenance.rig, provenance.config.obstacles)};
+}
+
+Json scan_json(const Frame& frame, const FloorFrame& floor, const Provenance& provenance) {
+  const ObstacleScan scan = scan_obstacles(frame, floor, *provenance.rig, provenance.config.obstacles);
   Json ranges = Json::array();
   for (const float range : scan.ranges_m) ranges.push_back(json(range));
   return {{"angle_min_rad", json(scan.angle_min_rad)},
@@ -119,12 +129,9 @@ Json scan_json(const Frame& frame, const Provenance& provenance) {
           {"ranges_m", ranges}};
 }
 
-/// null if no floor is known in metres.
-Json steps_json(const Frame& frame, const Provenance& provenance) {
-  const auto floor = floor_frame(frame.ground, provenance.rig);
-  if (!floor) return nullptr;
+Json steps_json(const std::vector<GroundStep>& steps) {
   Json all = Json::array();
-  for (const GroundStep& step : find_steps(frame, *floor, *provenance.rig, provenance.config.obstacles)) {
+  for (const GroundStep& step : steps) {
     all.push_back(
         {{"from_m", json(step.from_m)}, {"to_m", json(step.to_m)}, {"height_m", json(step.height_m)}});
   }
@@ -172,7 +179,8 @@ Json size_json(const Frame& frame) {
 }
 
 /// Writes the results, up to the end of the document.
-void add_findings(Json& j, const Frame& frame, const Provenance& provenance) {
+void add_findings(Json& j, const Frame& frame, const Provenance& provenance,
+                  const std::optional<FloorWithSteps>& floor) {
   j["epipolar"] = json(frame.epipolar);
   j["ground"] = json(frame.ground);
   j["floor_frame"] = floor_json(frame, provenance);
@@ -180,8 +188,38 @@ void add_findings(Json& j, const Frame& frame, const Provenance& provenance) {
   for (const Object& object : frame.objects.list) j["objects"].push_back(json(object, frame.objects.labels));
   j["left_out"] = Json::array();
   for (const RejectedObstacle& left : frame.left_out) j["left_out"].push_back(json(left));
-  j["obstacle_scan"] = frame.space.empty() ? Json(nullptr) : scan_json(frame, provenance);
-  j["ground_steps"] = frame.space.empty() ? Json(nullptr) : steps_json(frame, provenance);
+  j["obstacle_scan"] = floor ? scan_json(frame, floor->frame, provenance) : Json(nullptr);
+  j["ground_steps"] = floor ? steps_json(floor->steps) : Json(nullptr);
+}
+
+Json document_of(const Frame& frame, const Provenance& provenance,
+                 const std::optional<FloorWithSteps>& floor) {
+  Json j;
+  j["cairn"] = CAIRN_VERSION;
+  j["schema"] = kObjectsSchema;
+  j["stamp_ns"] = provenance.stamp_ns ? Json(*provenance.stamp_ns) : Json(nullptr);
+  j["image"] = size_json(frame);
+  j["rig"] = json(provenance.rig);
+  j["preset"] = provenance.preset;
+  j["config"] = json_of(provenance.config);
+  j["external_disparity"] = provenance.external_disparity;
+  j["timings_ms"] = Json::object();
+  for (const StageTime& time : provenance.timings) {
+    j["timings_ms"][time.stage] = std::round(time.milliseconds * 1000) / 1000;
+  }
+  add_findings(j, frame, provenance, floor);
+  return j;
+}
+
+std::string file_text(const Json& j) {
+  return json_text(j, 1) + "\n";
+}
+
+Image<Rgb> draw_frame(View<const Gray> left, View<const Rgb> left_rgb, const Frame& frame,
+                      const Provenance& provenance, const std::optional<FloorWithSteps>& floor) {
+  std::vector<DrawnStep> steps;
+  if (floor) steps = drawn_steps(floor->steps, floor->frame, *provenance.rig);
+  return draw_objects(left, left_rgb, frame.objects, frame.floor, steps);
 }
 
 // ---- the folder ----
@@ -245,6 +283,7 @@ struct Result {
   const Frame& frame;
   const Provenance& provenance;
   Extras extras;
+  std::optional<FloorWithSteps> floor{};
   std::optional<ObstacleGrid> grid{};  // if wanted and known
 };
 
@@ -328,12 +367,6 @@ bool has_grid(const Result& r) {
   return r.grid.has_value();
 }
 
-std::optional<ObstacleGrid> grid_of(const Frame& frame, const Provenance& provenance) {
-  const auto floor = floor_frame(frame.ground, provenance.rig);
-  if (!floor || frame.space.empty()) return std::nullopt;
-  return map_obstacles(frame, *floor, *provenance.rig, provenance.config.obstacles);
-}
-
 /// In the format of ROS map_server: the row with the greatest y first.
 std::string grid_pgm(const ObstacleGrid& grid) {
   constexpr char kUnknown = static_cast<char>(205);
@@ -401,7 +434,7 @@ constexpr std::array kResultFiles{
                [](const fs::path& path, const Result& r) { io::write_file(path, grid_yaml(*r.grid)); }},
     ResultFile{"overlay.png", always,
                [](const fs::path& path, const Result& r) {
-                 const Image<Rgb> picture = draw_objects(r.left, r.left_rgb, r.frame.objects, r.frame.floor);
+                 const Image<Rgb> picture = draw_frame(r.left, r.left_rgb, r.frame, r.provenance, r.floor);
                  io::save_png(path, View<const Rgb>(picture));
                }},
     ResultFile{"disparity_view.png", always,
@@ -483,25 +516,16 @@ Json json_of(const Config& config) {
 }
 
 Json json_of(const Frame& frame, const Provenance& provenance) {
-  Json j;
-  j["cairn"] = CAIRN_VERSION;
-  j["schema"] = kObjectsSchema;
-  j["stamp_ns"] = provenance.stamp_ns ? Json(*provenance.stamp_ns) : Json(nullptr);
-  j["image"] = size_json(frame);
-  j["rig"] = json(provenance.rig);
-  j["preset"] = provenance.preset;
-  j["config"] = json_of(provenance.config);
-  j["external_disparity"] = provenance.external_disparity;
-  j["timings_ms"] = Json::object();
-  for (const StageTime& time : provenance.timings) {
-    j["timings_ms"][time.stage] = std::round(time.milliseconds * 1000) / 1000;
-  }
-  add_findings(j, frame, provenance);
-  return j;
+  return document_of(frame, provenance, floor_with_steps(frame, provenance));
 }
 
 std::string objects_json(const Frame& frame, const Provenance& provenance) {
-  return json_text(json_of(frame, provenance), 1) + "\n";
+  return file_text(json_of(frame, provenance));
+}
+
+Image<Rgb> draw_frame(View<const Gray> left, View<const Rgb> left_rgb, const Frame& frame,
+                      const Provenance& provenance) {
+  return draw_frame(left, left_rgb, frame, provenance, floor_with_steps(frame, provenance));
 }
 
 std::string frame_row(const std::string& name, const Frame& frame, const Provenance& provenance) {
@@ -510,7 +534,7 @@ std::string frame_row(const std::string& name, const Frame& frame, const Provena
   if (provenance.stamp_ns) j["stamp_ns"] = *provenance.stamp_ns;
   j["image"] = size_json(frame);
   j["rig"] = json(provenance.rig);
-  add_findings(j, frame, provenance);
+  add_findings(j, frame, provenance, floor_with_steps(frame, provenance));
   return j.dump();
 }
 
@@ -537,8 +561,11 @@ void write_result(const fs::path& given_folder, View<const Gray> left, View<cons
   // Absolute and without a trailing slash, so that every folder has a parent.
   fs::path folder = fs::absolute(given_folder, failed).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
-  Result result{left, left_rgb, frame, provenance, extras};
-  if (extras.grid) result.grid = grid_of(frame, provenance);
+  Result result{left, left_rgb, frame, provenance, extras, floor_with_steps(frame, provenance)};
+  if (extras.grid && result.floor) {
+    result.grid = map_obstacles(frame, result.floor->steps, result.floor->frame, *provenance.rig,
+                                provenance.config.obstacles);
+  }
   try {
     if (fs::exists(folder)) {
       if (!fs::is_directory(folder)) throw Error(given_folder.string() + ": is a file, expected a folder");

@@ -33,6 +33,10 @@ inline constexpr const char* kObjectsSchema = "2.1";
 /// The content of objects.json (docs/formats.md). Ends with a newline.
 std::string objects_json(const Frame& frame, const Provenance& provenance);
 
+/// The image overlay.png: draw_objects(), with the steps of the ground. `left_rgb` may be empty.
+Image<Rgb> draw_frame(View<const Gray> left, View<const Rgb> left_rgb, const Frame& frame,
+                      const Provenance& provenance);
+
 /// A frame as one line of a run (docs/batch.md), without a newline: its name, its stamp if it has one, and
 /// objects.json except for what is common to the run (version, preset, options) and the times, so that the
 /// line depends on images, calibration and options only.

@@ -47,12 +47,17 @@ std::vector<GroundStep> find_steps(const Frame& frame, const FloorFrame& floor, 
 
 ObstacleGrid map_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
                            const ObstaclesConfig& config) {
+  return map_obstacles(frame, find_steps(frame, floor, rig, config), floor, rig, config);
+}
+
+ObstacleGrid map_obstacles(const Frame& frame, const std::vector<GroundStep>& steps, const FloorFrame& floor,
+                           const StereoRig& rig, const ObstaclesConfig& config) {
   // Where the ground curves away from its plane, it is free, too.
   const DisparityMap flat{
       without_curvature(frame.disparity.disparity_px.clone(), frame.space, frame.ground, rig), {}};
   const Image<float> disparity_px = obstacles_at(flat, frame);
   ObstacleGrid grid = map_obstacles(frame.space, disparity_px, floor, rig, config);
-  add_steps(grid, find_steps(frame, floor, rig, config));
+  add_steps(grid, steps);
   return grid;
 }
 

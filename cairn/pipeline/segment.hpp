@@ -48,6 +48,9 @@ std::vector<GroundStep> find_steps(const Frame& frame, const FloorFrame& floor, 
                                    const ObstaclesConfig& config);
 ObstacleGrid map_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
                            const ObstaclesConfig& config);
+/// The same; `steps`: of find_steps().
+ObstacleGrid map_obstacles(const Frame& frame, const std::vector<GroundStep>& steps, const FloorFrame& floor,
+                           const StereoRig& rig, const ObstaclesConfig& config);
 
 /// The limits of an object in an image of this size, for choose_objects().
 ChoiceLimits limits_of(const ObjectsConfig& config, Size image);

@@ -260,6 +260,12 @@ void bind_files_and_images(py::module_& m) {
       },
       Released());
   m.def(
+      "draw_frame",
+      [](const LoadedImage& left, const Frame& frame, const output::Provenance& how) {
+        return output::draw_frame(left.gray(), left.rgb(), frame, how);
+      },
+      Released());
+  m.def(
       "draw_objects",
       [](const LoadedImage& left, const Objects& objects, View<const std::uint8_t> floor) {
         return output::draw_objects(left.gray(), left.rgb(), objects, floor);

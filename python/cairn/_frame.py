@@ -101,9 +101,9 @@ class Frame:
         return _cairn.points_of_object(self._data, self._metric(), whole(getattr(object, "id", object)) or 0)
 
     def overlay(self) -> NDArray[numpy.uint8]:
-        """The left image with the objects drawn in, each with its id and distance: (h, w, 3) uint8, RGB. Small images
-        are enlarged."""
-        return _cairn.draw_objects(self._left, self.objects, self.floor)
+        """The left image with the objects drawn in, each with its id and distance, and the steps of the ground with their
+        heights: (h, w, 3) uint8, RGB. Small images are enlarged."""
+        return _cairn.draw_frame(self._left, self._data, self._how)
 
     def disparity_view(self) -> NDArray[numpy.uint8]:
         """Colour-coded disparity, holes coloured by reason, with a legend: (h, w, 3) uint8, RGB."""

@@ -84,6 +84,35 @@ TEST(ObjectOverlay, HasALegendBelow) {
   EXPECT_EQ(chips(draw_objects(left, {}, objects, {})).count({90, 150, 190}), 0U);
 }
 
+TEST(ObjectOverlay, MarksStepsOfTheGround) {
+  const Size size{640, 480};
+  const Image<Gray> left(size, Gray{120}, {});
+  Objects none;
+  none.labels = Image<ObjectId>(size, ObjectId::none, {});
+  // A camera 1 m above the floor that looks ahead; a kerb 2 m ahead, from 1 m to the left to 1 m to the right.
+  const FloorFrame floor{{0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, 1};
+  const StereoRig rig{.focal_px = 200, .cx_px = 320, .cy_px = 200, .baseline_m = 0.1F};
+  const std::vector<DrawnStep> steps = drawn_steps({{{2, 1, 0}, {2, -1, 0}, 0.12F}}, floor, rig);
+  ASSERT_EQ(steps.size(), 1U);
+  EXPECT_FLOAT_EQ(steps[0].from_x, 220);
+  EXPECT_FLOAT_EQ(steps[0].to_x, 420);
+  EXPECT_FLOAT_EQ(steps[0].from_y, 300);
+  EXPECT_FLOAT_EQ(steps[0].to_y, 300);
+  EXPECT_EQ(steps[0].height_m, 0.12F);
+  const Image<Rgb> with = draw_objects(left, {}, none, {}, steps);
+  const Image<Rgb> without = draw_objects(left, {}, none, {});
+  EXPECT_GT(distance(with(230, 300), without(230, 300)), 60);
+  EXPECT_EQ(distance(with(230, 290), without(230, 290)), 0);
+  EXPECT_EQ(distance(with(210, 300), without(210, 300)), 0);
+  int changed_by_label = 0;
+  for (int y = 285; y < 315; ++y) changed_by_label += distance(with(315, y), without(315, y)) > 0 ? 1 : 0;
+  EXPECT_GT(changed_by_label, 4);
+  int changed_in_legend = 0;
+  for (int x = 0; x < size.width; ++x)
+    changed_in_legend += with(x, size.height + 12) == without(x, size.height + 12) ? 0 : 1;
+  EXPECT_GT(changed_in_legend, 10);
+}
+
 TEST(ObjectOverlay, LabelsEachObject) {
   const Size size{640, 480};
   const Image<Gray> left(size, Gray{120}, {});
