@@ -351,8 +351,10 @@ def of_library(net, path, frames):
     def tensor(values):
         return torch.tensor(np.array(values, np.float32))
 
-    olds = []
-    for step, (shape, whole, bias, scale) in zip([*net.steps, net.end], fitted_files.read_network(path)):
+    olds, layers = [], fitted_files.read_network(path)
+    if len(layers) != len(net.steps) + 1:
+        raise SystemExit(f"fit_hints.py: the network of {path} has {len(layers)} layers, expected {len(net.steps) + 1}")
+    for step, (shape, whole, bias, scale) in zip([*net.steps, net.end], layers):
         inputs, outputs, side = shape[:3]
         is_end = step is net.end
         unit = scale.astype(np.float64)

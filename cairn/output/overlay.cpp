@@ -197,7 +197,8 @@ std::vector<Label> mark_steps(Image<Rgb>& canvas, const std::vector<DrawnStep>& 
     const auto on_canvas = [&](float x, float y) {
       const auto whole = [&](float px) {
         constexpr float kFar = 1e6F;  // px
-        return static_cast<int>(std::floor(std::clamp((px + 0.5F) * static_cast<float>(factor), -kFar, kFar)));
+        return static_cast<int>(
+            std::floor(std::clamp((px + 0.5F) * static_cast<float>(factor), -kFar, kFar)));
       };
       return drawing::Point{whole(x), whole(y)};
     };

@@ -21,8 +21,9 @@ struct DrawnStep {
   float from_y = 0;
   float to_x = 0;
   float to_y = 0;
-  float height_m = 0;
+  float height_m = 0;  // negative: a step down
 };
+/// The lines of steps that the camera sees.
 std::vector<DrawnStep> drawn_steps(const std::vector<GroundStep>& steps, const FloorFrame& floor,
                                    const StereoRig& rig);
 

@@ -112,7 +112,7 @@ struct FloorWithSteps {
   std::vector<GroundStep> steps;
 };
 
-/// nullopt if no floor is known in metres, or no obstacles.
+/// nullopt if no floor is known in metres, or without `frame.space`.
 std::optional<FloorWithSteps> floor_with_steps(const Frame& frame, const Provenance& provenance) {
   const auto floor = floor_frame(frame.ground, provenance.rig);
   if (!floor || frame.space.empty()) return std::nullopt;
@@ -448,7 +448,7 @@ constexpr std::array kResultFiles{
                [](const Result& r) { return r.extras.point_cloud && r.provenance.rig.has_value(); },
                write_cloud},
     ResultFile{"objects.json", always, [](const fs::path& path, const Result& r) {
-                 io::write_file(path, objects_json(r.frame, r.provenance));
+                 io::write_file(path, file_text(document_of(r.frame, r.provenance, r.floor)));
                }}};
 
 /// The folder with one file per object.

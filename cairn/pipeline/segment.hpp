@@ -48,7 +48,7 @@ std::vector<GroundStep> find_steps(const Frame& frame, const FloorFrame& floor, 
                                    const ObstaclesConfig& config);
 ObstacleGrid map_obstacles(const Frame& frame, const FloorFrame& floor, const StereoRig& rig,
                            const ObstaclesConfig& config);
-/// The same; `steps`: of find_steps().
+/// The same, with the steps that find_steps() has found.
 ObstacleGrid map_obstacles(const Frame& frame, const std::vector<GroundStep>& steps, const FloorFrame& floor,
                            const StereoRig& rig, const ObstaclesConfig& config);
 

@@ -52,8 +52,8 @@ inline constexpr std::size_t kHintLayers = 17;
 class HintNetwork {
  public:
   /// `weights`: per layer [row][column][input][output]; `bias` and `scale`: per layer [output]. Copied.
-  /// Throws Error for a layer with more outputs than the kernels compute. Precondition: the sizes match `layers`; only
-  /// the last layer has a negative `least`.
+  /// Throws Error for a layer with more outputs than the kernels compute. Precondition: `layers` has kHintLayers
+  /// entries, which the sizes match; only the last one has a negative `least`.
   HintNetwork(std::span<const HintLayer> layers, std::span<const std::int8_t> weights,
               std::span<const std::int32_t> bias, std::span<const float> scale);
   HintNetwork(HintNetwork&&) noexcept;

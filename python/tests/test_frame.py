@@ -93,7 +93,7 @@ def test_obstacles_are_reported_whether_objects_or_not(sample):
     assert without.scan() is None and without.ground_steps() is None and without.grid() is None and without.floor_frame is None
 
 
-def test_a_kerb_is_a_step_of_the_ground(kerb):
+def test_a_kerb_is_a_step_of_the_ground(kerb, tmp_path):
     step, = kerb.ground_steps()
     assert abs(step.height_m - 0.12) < 0.01 and repr(step).startswith("GroundStep(")
     assert abs(step.from_m[0] - 2) < 0.15 and abs(step.to_m[0] - 2) < 0.15 and abs(step.from_m[2]) < 0.01
@@ -101,6 +101,10 @@ def test_a_kerb_is_a_step_of_the_ground(kerb):
     grid = kerb.grid()
     middle = (np.add(step.from_m, step.to_m)[:2] / 2 - grid.origin_in_floor_m) / grid.cell_size_m
     assert grid.cells[int(middle[1]), int(middle[0])] == 100
+    drawn = kerb.overlay()
+    assert (np.abs(drawn[..., :3] - np.array([255, 210, 60.0])).sum(2) < 30).sum() > 300  # the line of the step
+    kerb.save(tmp_path)
+    assert same(drawn, cairn.load_picture(tmp_path / "overlay.png"))
     written, = json.loads(kerb.to_json())["ground_steps"]
     assert np.allclose([*written["from_m"], *written["to_m"], written["height_m"]], [*step.from_m, *step.to_m, step.height_m])
 
