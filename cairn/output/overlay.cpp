@@ -89,9 +89,10 @@ void write_labels(Image<Rgb>& canvas, const std::vector<Label>& labels) {
       drawing::draw_line(canvas, {place.x + place.width / 2, place.y + place.height / 2}, at, white);
     }
   }
-  for (std::size_t i = 0; i < labels.size(); ++i)
+  for (std::size_t i = 0; i < labels.size(); ++i) {
     drawing::draw_text(canvas, labels[i].text, {places[i].x, places[i].y + labels[i].extent.above},
                        kLabelHeight, white);
+  }
 }
 
 /// The enlarged image, with its background faded to grey.
@@ -192,18 +193,14 @@ void tint(Image<Rgb>& canvas, const Objects& objects, View<const std::uint8_t> f
 
 /// Draws the lines, and returns their labels.
 std::vector<Label> mark_steps(Image<Rgb>& canvas, const std::vector<DrawnStep>& steps, int factor) {
+  const auto on_canvas = [&](float px) {
+    constexpr float kFar = 1e6F;  // px
+    return static_cast<int>(std::floor(std::clamp((px + 0.5F) * static_cast<float>(factor), -kFar, kFar)));
+  };
   std::vector<Label> names;
   for (const DrawnStep& step : steps) {
-    const auto on_canvas = [&](float x, float y) {
-      const auto whole = [&](float px) {
-        constexpr float kFar = 1e6F;  // px
-        return static_cast<int>(
-            std::floor(std::clamp((px + 0.5F) * static_cast<float>(factor), -kFar, kFar)));
-      };
-      return drawing::Point{whole(x), whole(y)};
-    };
-    const drawing::Point from = on_canvas(step.from_x, step.from_y);
-    const drawing::Point to = on_canvas(step.to_x, step.to_y);
+    const drawing::Point from{on_canvas(step.from_x), on_canvas(step.from_y)};
+    const drawing::Point to{on_canvas(step.to_x), on_canvas(step.to_y)};
     for (int below = 0; below < 2; ++below)
       drawing::draw_line(canvas, {from.x, from.y + below}, {to.x, to.y + below}, kStep);
     names.push_back(
