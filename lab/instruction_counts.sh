@@ -70,7 +70,7 @@ for preset in default paper; do counts "$preset"; done >"$scratch/now"
 
 if [[ $mode == --update ]]; then
   {
-    echo "# Instructions that one frame of data/samples/four_in_a_row takes: one thread, AVX2 kernels; what a function calls is"
+    echo "# Instructions that one frame of data/samples/four_in_a_row takes: one thread, AVX2 kernels without VNNI; what a function calls is"
     echo "# counted with it. Written by ./dev test --update; checked to $most_percent % by the test contracts/instruction_counts."
     echo "# built with: $key"
     awk -v least="$least_percent" '

@@ -12,7 +12,9 @@
 //
 // The file CAIRN_KERNELS is included here once for each Highway target and once for plain C++, the latter
 // with CAIRN_PLAIN_KERNELS = 1. Plain loops need only this: Highway switches the instruction set of the
-// compiler. Kernels written in Highway's vectors define CAIRN_KERNELS_USE_VECTORS before.
+// compiler. Kernels written in Highway's vectors define CAIRN_KERNELS_USE_VECTORS before. Those that also define
+// CAIRN_KERNELS_USE_VNNI are compiled once more for AVX2 and AVX-512, in N_AVX2_VNNI and N_AVX3_VNNI, with
+// CAIRN_VNNI = 1 and the instructions that add products to sums; CAIRN_OF_VNNI_TARGET finds them.
 //
 // No include guard: to be included once, by a source file.
 #include <cairn/core/target.hpp>
@@ -33,6 +35,7 @@
 #endif
 
 #define CAIRN_PLAIN_KERNELS 1
+#define CAIRN_VNNI 0
 #define CAIRN_KERNEL_TARGET plain_kernels
 #define CAIRN_LANES_INLINE inline
 #define CAIRN_LANES_ATTR
@@ -81,6 +84,29 @@
       CAIRN_OF_NEON(name)             \
     default:                          \
       return nullptr;                 \
+  }
+
+// The same for the kernels with VNNI: ends a function in which `target` is one that the processor has with VNNI.
+#if CAIRN_WITH_HWY && (HWY_TARGETS & HWY_AVX2)
+#define CAIRN_OF_AVX2_VNNI(name) \
+  case Target::avx2:             \
+    return &N_AVX2_VNNI::name;
+#else
+#define CAIRN_OF_AVX2_VNNI(name)
+#endif
+#if CAIRN_WITH_HWY && (HWY_TARGETS & HWY_AVX3)
+#define CAIRN_OF_AVX512_VNNI(name) \
+  case Target::avx512:             \
+    return &N_AVX3_VNNI::name;
+#else
+#define CAIRN_OF_AVX512_VNNI(name)
+#endif
+#define CAIRN_OF_VNNI_TARGET(target, name) \
+  switch (target) {                        \
+    CAIRN_OF_AVX2_VNNI(name)               \
+    CAIRN_OF_AVX512_VNNI(name)             \
+    default:                               \
+      return nullptr;                      \
   }
 
 // Defines `choose(target)`, nullptr if this build has no kernels for it, and `choose(exec)`, the kernels for

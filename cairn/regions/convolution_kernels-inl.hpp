@@ -35,6 +35,14 @@ inline void convolve_two(const std::int16_t* const* rows, const Convolution& by,
   }
 }
 
+inline void add_doubled(const std::int16_t* small, const std::int16_t* like, int channels, int width,
+                        std::int16_t* out) {
+  for (int x = 0; x < width; ++x) {
+    for (int c = 0; c < channels; ++c)
+      *out++ = static_cast<std::int16_t>(std::min(small[x / 2 * channels + c] + *like++, kMaxActivation));
+  }
+}
+
 #else
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -45,6 +53,30 @@ using Eight = hn::CappedTag<std::int32_t, 8>;
 
 template <class Sums>
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(Sums()));
+
+#if CAIRN_VNNI && HWY_TARGET == HWY_AVX3
+HWY_INLINE __m512i products_added(__m512i sums, __m512i a, __m512i b) {
+  return _mm512_dpwssd_epi32(sums, a, b);
+}
+HWY_INLINE __m256i products_added(__m256i sums, __m256i a, __m256i b) {
+  return _mm256_dpwssd_epi32(sums, a, b);
+}
+#elif CAIRN_VNNI
+HWY_INLINE __m256i products_added(__m256i sums, __m256i a, __m256i b) {
+  return _mm256_dpwssd_avx_epi32(sums, a, b);
+}
+#endif
+
+/// To each of `sums`, two products. `others`: for instruction sets that sum two halves separately.
+template <class Sums, class Pairs>
+HWY_INLINE hn::Vec<Sums> add_products([[maybe_unused]] Sums d, Pairs a, Pairs b, hn::Vec<Sums> sums,
+                                      [[maybe_unused]] hn::Vec<Sums>& others) {
+#if CAIRN_VNNI
+  return hn::Vec<Sums>{products_added(sums.raw, a.raw, b.raw)};
+#else
+  return hn::ReorderWidenMulAccumulate(d, a, b, sums, others);
+#endif
+}
 
 /// Outputs from sums of products.
 template <class Sums>
@@ -68,7 +100,7 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
   const Sums d;
   const hn::Repartition<std::int16_t, Sums> pairs;
   hn::Vec<Sums> sums[kPixels][kVectors];
-  hn::Vec<Sums> others[kPixels][kVectors];  // for instruction sets that sum two halves separately
+  hn::Vec<Sums> others[kPixels][kVectors];
 #pragma GCC unroll 12
   for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 12
@@ -93,8 +125,7 @@ HWY_INLINE void outputs_of(const std::int16_t* const* rows, const Convolution& b
       for (int v = 0; v < kVectors; ++v) {
         const auto w = hn::LoadU(pairs, weights + 2 * v * kLanes<Sums>);
 #pragma GCC unroll 12
-        for (int p = 0; p < kPixels; ++p)
-          sums[p][v] = hn::ReorderWidenMulAccumulate(d, two[p], w, sums[p][v], others[p][v]);
+        for (int p = 0; p < kPixels; ++p) sums[p][v] = add_products(d, two[p], w, sums[p][v], others[p][v]);
       }
     }
   }
@@ -216,8 +247,7 @@ HWY_INLINE void outputs_of_tiles(const std::int16_t* HWY_RESTRICT tiles, const C
         std::memcpy(&both, tiles + t * kMaxTiledInputs + i, sizeof both);
         const auto two = hn::BitCast(pairs, hn::Set(d, both));
 #pragma GCC unroll 12
-        for (int v = 0; v < kCount; ++v)
-          sums[t][v] = hn::ReorderWidenMulAccumulate(d, two, w[v], sums[t][v], others[t][v]);
+        for (int v = 0; v < kCount; ++v) sums[t][v] = add_products(d, two, w[v], sums[t][v], others[t][v]);
       }
     }
     tiles += kTiles * kMaxTiledInputs;
@@ -270,9 +300,23 @@ inline void convolve_two(const std::int16_t* const* rows, const Convolution& by,
   }
 }
 
+inline void add_doubled(const std::int16_t* small, const std::int16_t* like, int channels, int width,
+                        std::int16_t* HWY_RESTRICT out) {
+  const Activation d;
+  const auto greatest = hn::Set(d, static_cast<std::int16_t>(kMaxActivation));
+  for (int x = 0; x < width; ++x) {
+    const std::ptrdiff_t from = std::ptrdiff_t{x / 2} * channels;
+    const std::ptrdiff_t to = std::ptrdiff_t{x} * channels;
+    for (int c = 0; c < channels; c += static_cast<int>(hn::MaxLanes(d))) {
+      const auto sum = hn::Add(hn::LoadU(d, small + from + c), hn::LoadU(d, like + to + c));
+      hn::StoreU(hn::Min(sum, greatest), d, out + to + c);
+    }
+  }
+}
+
 #endif
 
-inline constexpr ConvolutionKernels kConvolutionKernels{convolve, convolve_two};
+inline constexpr ConvolutionKernels kConvolutionKernels{convolve, convolve_two, add_doubled};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -5,7 +5,8 @@
 #include <cairn/core/exec.hpp>
 #include <cstdint>
 
-/// The kernels of hint_objects(), per row; one set per instruction set. Private to the library.
+/// The kernels of hint_objects(), per row; one set per instruction set, and one more with VNNI for those that have it.
+/// Private to the library.
 namespace cairn::kernels {
 
 /// A convolution of integers. `inputs` is even, `outputs` a multiple of 8 up to kMaxOutputs.
@@ -45,11 +46,19 @@ struct ConvolutionKernels {
   /// `out[1]` may be nullptr. Preconditions: side 3, stride 1, `inputs` a multiple of 8 up to kMaxTiledInputs.
   void (*convolve_two)(const std::int16_t* const* rows, const Convolution& by, int width,
                        std::int16_t* const* out);
+  /// A row of `like`, `width` pixels, plus one of `small`, each pixel of which counts twice; limited to kMaxActivation.
+  /// Preconditions: `channels` is a multiple of 8; all numbers are from 0 to kMaxActivation.
+  void (*add_doubled)(const std::int16_t* small, const std::int16_t* like, int channels, int width,
+                      std::int16_t* out);
 };
 
 /// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.
 const ConvolutionKernels* convolution_kernels(Target target);
-/// The functions for the active target of `exec`.
+/// The same, but products of 16 bits are added to sums of 32 in one instruction: AVX-VNNI for Target::avx2,
+/// AVX512-VNNI for Target::avx512. nullptr if the build or this processor has none. Precondition: the processor supports
+/// `target`.
+const ConvolutionKernels* vnni_convolution_kernels(Target target);
+/// The fastest functions for the active target of `exec`.
 const ConvolutionKernels& convolution_kernels(const Exec& exec);
 
 }  // namespace cairn::kernels

@@ -66,20 +66,13 @@ Activations convolved(const Activations& in, const kernels::Convolution& by, con
 }
 
 /// `small` at twice its resolution, plus `like`.
-Activations doubled_and_added(const Activations& small, const Activations& like, const Pool& pool) {
-  Activations out = framed_activations(like.size, like.channels, pool);
-  for (int y = 0; y < like.size.height; ++y) {
-    const std::int16_t* const a = small.row(y / 2);
-    const std::int16_t* const b = like.row(y);
-    std::int16_t* const to = out.row(y);
-    for (int x = 0; x < like.size.width; ++x) {
-      for (int c = 0; c < like.channels; ++c) {
-        const int at = x * like.channels + c;
-        to[at] = static_cast<std::int16_t>(
-            std::min(a[x / 2 * like.channels + c] + b[at], kernels::kMaxActivation));
-      }
-    }
-  }
+Activations doubled_and_added(const Activations& small, const Activations& like, const Exec& exec) {
+  Activations out = framed_activations(like.size, like.channels, exec.pool);
+  const kernels::ConvolutionKernels& run = kernels::convolution_kernels(exec);
+  parallel_for(exec, like.size.height, kGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y)
+      run.add_doubled(small.row(y / 2), like.row(y), like.channels, like.size.width, out.row(y));
+  });
   return out;
 }
 
@@ -236,9 +229,9 @@ Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& net
   const Activations quarter = layer(kEncode4b, layer(kEncode4a, half));
   const Activations eighth = layer(kEncode8c, layer(kEncode8b, layer(kEncode8a, quarter)));
   Activations up = layer(kEncode16c, layer(kEncode16b, layer(kEncode16a, eighth)));
-  up = layer(kDecode8b, doubled_and_added(layer(kDecode8a, up), eighth, exec.pool));
-  up = layer(kDecode4b, doubled_and_added(layer(kDecode4a, up), quarter, exec.pool));
-  up = layer(kDecode2b, doubled_and_added(layer(kDecode2a, up), half, exec.pool));
+  up = layer(kDecode8b, doubled_and_added(layer(kDecode8a, up), eighth, exec));
+  up = layer(kDecode4b, doubled_and_added(layer(kDecode4a, up), quarter, exec));
+  up = layer(kDecode2b, doubled_and_added(layer(kDecode2a, up), half, exec));
   const Activations output = layer(kOutput, up);
   // Each output pixel holds four neighbouring cells.
   Image<ObjectHint> hints(cells, exec.pool);

@@ -5,10 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cairn/core/ids.hpp>
 #include <cairn/core/target.hpp>
 #include <cairn/regions/convolution_kernels.hpp>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "support/grids.hpp"
 #include "support/region_scene.hpp"
@@ -173,6 +180,100 @@ TEST(HintObjects, OfAWideNetworkEqualTheirDefinitionOnEveryTarget) {
       SCOPED_TRACE(name(target));
       expect_equal(hint_objects(input.clone(), numbers.network(), on(target)), expected);
     }
+  }
+}
+
+/// What all kernels make of rows of `width` pixels with numbers from `least` to kMaxActivation.
+std::vector<std::int16_t> outputs_of(const kernels::ConvolutionKernels& run, const kernels::Convolution& by,
+                                     int width, int least) {
+  const auto random = [&](int pixels, int channels, int rows) {
+    return random_image<std::int16_t>({pixels * channels, rows}, least, kernels::kMaxActivation, 7);
+  };
+  const Image<std::int16_t> in = random(by.stride * width + 2, by.inputs, 4);
+  const std::array rows{in.row(0), in.row(1), in.row(2), in.row(3)};
+  const std::size_t count = slot(width * by.outputs);
+  std::vector<std::int16_t> out(5 * count);
+  run.convolve(rows.data(), by, width, out.data());
+  if (by.transformed_weights != nullptr) {
+    const std::array both{out.data() + count, out.data() + 2 * count};
+    run.convolve_two(rows.data(), by, width, both.data());
+    const std::array<std::int16_t*, 2> one{out.data() + 3 * count, nullptr};
+    run.convolve_two(rows.data(), by, width, one.data());
+  }
+  if (least >= 0) {
+    const Image<std::int16_t> small = random((width + 1) / 2, by.outputs, 1);
+    const Image<std::int16_t> like = random(width, by.outputs, 2);
+    run.add_doubled(small.row(0), like.row(1), by.outputs, width, out.data() + 4 * count);
+  }
+  return out;
+}
+
+/// hint_objects() takes the kernels with VNNI where there are any, so the test of each target does not see the others.
+class ConvolutionKernels : public ::testing::TestWithParam<std::pair<Target, bool>> {
+ protected:
+  void SetUp() override {
+    const auto [target, with_vnni] = GetParam();
+    run_ = with_vnni ? kernels::vnni_convolution_kernels(target) : kernels::convolution_kernels(target);
+    if (run_ == nullptr) GTEST_SKIP() << "this processor has no VNNI with such vectors";
+  }
+  const kernels::ConvolutionKernels* run_ = nullptr;
+};
+
+TEST_P(ConvolutionKernels, EqualThoseWithoutVectors) {
+  const kernels::ConvolutionKernels& plain = *kernels::convolution_kernels(Target::scalar);
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const HintNetwork network = random_numbers(seed, 8, kernels::kMaxOutputs).network();
+    for (std::size_t i = 0; i < kHintLayers; ++i) {
+      for (const int width : {1, 2, 9, 10, 11, 37}) {
+        for (const int least : {-256, 0}) {
+          EXPECT_EQ(outputs_of(*run_, network.layer(i), width, least),
+                    outputs_of(plain, network.layer(i), width, least));
+        }
+      }
+    }
+  }
+}
+
+TEST_P(ConvolutionKernels, DoNotOverflowWithTheLargestSums) {
+  HintNumbers numbers = random_numbers(6, kernels::kMaxOutputs, kernels::kMaxOutputs);
+  std::fill(numbers.weights.begin(), numbers.weights.end(), std::int8_t{127});
+  std::fill(numbers.scale.begin(), numbers.scale.end(), 5e-6F);  // outputs below the limit
+  const HintNetwork network = numbers.network();
+  for (std::size_t i = 0; i < kHintLayers; ++i) {
+    const auto expected = outputs_of(*kernels::convolution_kernels(Target::scalar), network.layer(i), 11,
+                                     kernels::kMaxActivation);
+    EXPECT_LT(*std::max_element(expected.begin(), expected.begin() + 11), kernels::kMaxActivation);
+    EXPECT_EQ(outputs_of(*run_, network.layer(i), 11, kernels::kMaxActivation), expected);
+  }
+}
+
+std::vector<std::pair<Target, bool>> all_convolution_kernels() {
+  std::vector<std::pair<Target, bool>> all;
+  for (const Target target : supported_targets()) {
+    all.emplace_back(target, false);
+    if (target == Target::avx2 || target == Target::avx512) all.emplace_back(target, true);
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, ConvolutionKernels, ::testing::ValuesIn(all_convolution_kernels()),
+                         [](const auto& of) {
+                           return std::string(name(of.param.first)) + (of.param.second ? "_vnni" : "");
+                         });
+
+TEST(VnniKernels, AreTakenWhereTheProcessorHasThem) {
+  std::ifstream file("/proc/cpuinfo");
+  const std::string flags{std::istreambuf_iterator<char>(file), {}};
+  if (flags.find("\nflags") == std::string::npos) GTEST_SKIP() << "no list of the processor's features";
+  for (const Target target : supported_targets()) {
+    SCOPED_TRACE(name(target));
+    const auto has = [&](const char* flag) { return flags.find(flag) != std::string::npos; };
+    const bool expected =
+        (target == Target::avx2 && has(" avx_vnni")) || (target == Target::avx512 && has(" avx512_vnni"));
+    const kernels::ConvolutionKernels* const vnni = kernels::vnni_convolution_kernels(target);
+    EXPECT_EQ(vnni != nullptr, expected);
+    EXPECT_EQ(&kernels::convolution_kernels(on(target)),
+              expected ? vnni : kernels::convolution_kernels(target));
   }
 }
 
