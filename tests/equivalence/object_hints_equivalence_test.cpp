@@ -262,18 +262,18 @@ INSTANTIATE_TEST_SUITE_P(Targets, ConvolutionKernels, ::testing::ValuesIn(all_co
                          });
 
 TEST(VnniKernels, AreTakenWhereTheProcessorHasThem) {
+  // Older kernels of Linux do not list avx_vnni, so what is not listed may be there.
   std::ifstream file("/proc/cpuinfo");
-  const std::string flags{std::istreambuf_iterator<char>(file), {}};
-  if (flags.find("\nflags") == std::string::npos) GTEST_SKIP() << "no list of the processor's features";
+  const std::string features{std::istreambuf_iterator<char>(file), {}};
   for (const Target target : supported_targets()) {
     SCOPED_TRACE(name(target));
-    const auto has = [&](const char* flag) { return flags.find(flag) != std::string::npos; };
-    const bool expected =
-        (target == Target::avx2 && has(" avx_vnni")) || (target == Target::avx512 && has(" avx512_vnni"));
+    const auto has = [&](const char* feature) { return features.find(feature) != std::string::npos; };
     const kernels::ConvolutionKernels* const vnni = kernels::vnni_convolution_kernels(target);
-    EXPECT_EQ(vnni != nullptr, expected);
+    if ((target == Target::avx2 && has(" avx_vnni")) || (target == Target::avx512 && has(" avx512_vnni"))) {
+      EXPECT_NE(vnni, nullptr);
+    }
     EXPECT_EQ(&kernels::convolution_kernels(on(target)),
-              expected ? vnni : kernels::convolution_kernels(target));
+              vnni != nullptr ? vnni : kernels::convolution_kernels(target));
   }
 }
 
