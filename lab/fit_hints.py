@@ -5,8 +5,8 @@
 
 fit_hints.py gather TOOL STORE FRAMES...: the inputs of the network and the truth for folders of frames, in colour and
 in grey, into the folder STORE.
-fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--rate R] [--width W] [--worlds N] [--start FILE]: fits to
-such stores.
+fit_hints.py fit STORE... [--work FOLDER] [--out FOLDER] [--steps N] [--rate R] [--width W] [--worlds N] [--start FILE] [--keep S]: fits
+to such stores.
 
 For each cell of about four pixels, the network predicts whether it belongs to an object, whether it is on an object's outline,
 and the centre and size of its object. It is then quantised: weights to 8 bits per output channel, activations to
@@ -32,10 +32,13 @@ RATE_OF_OTHERS, DECAY = 3e-3, 2e-3  # of what is no filter: the lesser of this a
 WARM_UP = 0.1  # share of the steps
 CLOSE_UPS = 0.3  # share of the samples that simulate a narrower field of view
 PASTES = 0.35  # chance, taken twice, that an object of another frame is pasted
+MARKS, AT_BORDER = 0.5, 0.4  # chance of a flat mark on the floor, and that it is at the left or right border
 CALM = 0.2  # share of the steps, the last ones, without close-ups and pastes
 WIDTH, HEIGHT = 160, 120  # cells of a frame, or of what is seen of a larger one
-CHANNELS = 12
-FIRST, SECOND, THIRD, LAST = 32, 64, 112, 48  # channels at 1/2, 1/4, 1/8 and 1/16, and before the output
+CHANNELS, OWN = 16, 12  # channels of a cell; the last ones follow from its own and those around it
+REACH = 8  # cells: of what is around one
+LEAST_SPREADS = 5 / 64, 10 / 64, 10 / 64  # of brightness and colours
+FIRST, SECOND, THIRD, FOURTH, LAST = 32, 64, 112, 48, 48  # channels at 1/2, 1/4, 1/8 and 1/16, at 1/32, and before the output
 SHARED_ROOT = 24  # root of the size, in cells, of an object whose cells count as much as the background's
 UNIT = 64  # scale of the input
 DONT_CARE = 255
@@ -45,6 +48,7 @@ GREATEST = 4096  # activation: kMaxActivation
 STEPS_PER_UNIT = [16, 16, 128, 128, 16]
 CHECKPOINT_SECONDS = 600
 CALIBRATION = 200  # frames that show how large activations are
+COUNTED = 40  # batches that show what batch normalisation sees
 
 
 # ---- frames
@@ -61,7 +65,7 @@ def gather(tool, store, frames):
     done.unlink(missing_ok=True)
     jobs = [(frame, colour, "") for frame in frames for colour in ("colour", "grey")]
     run_tool(tool, store, jobs, lambda i: "- - -", "--inputs", store / "inputs@", parts=parts)
-    cells = np.lib.format.open_memmap(store / "cells.npy", "w+", np.int16, (len(jobs), CHANNELS, HEIGHT, WIDTH))
+    cells = np.lib.format.open_memmap(store / "cells.npy", "w+", np.int16, (len(jobs), OWN, HEIGHT, WIDTH))
     truth = np.lib.format.open_memmap(store / "truth.npy", "w+", np.uint8, (len(jobs), HEIGHT, WIDTH))
     for part in range(parts):
         values = np.fromfile(store / f"inputs{part}", np.int16)
@@ -69,20 +73,35 @@ def gather(tool, store, frames):
             continue
         width, height = map(int, values[1:3])
         area = width * height
+        check_twin(values[4:4 + area * CHANNELS].reshape(height, width, CHANNELS))
         for row in values.reshape(-1, 4 + area * (CHANNELS + 1)):
-            if (row[1], row[2], row[3]) != (width, height, 0) or width < WIDTH or height < HEIGHT:
+            if (row[1], row[2], row[3]) != (width, height, 0):
                 raise SystemExit("fit_hints.py: frames of one size, with complete truth, are expected")
             job = parts * int(row[0]) + part
-            # Of a larger image, which has more cells, a window; with what was normalised by the whole image as it is.
+            # Of a larger image, which has more cells, a window; with what was normalised by the whole image as it is. A flat
+            # one, which has fewer rows, is in the middle.
             random = np.random.RandomState([SEED, job])
-            x, y = random.randint(width - WIDTH + 1), random.randint(height - HEIGHT + 1)
-            window = np.s_[y:y + HEIGHT, x:x + WIDTH]
-            cells[job] = row[4:4 + area * CHANNELS].reshape(height, width, CHANNELS)[window].transpose(2, 0, 1)
+            rows, columns = min(height, HEIGHT), min(width, WIDTH)
+            x, y = random.randint(width - columns + 1), random.randint(height - rows + 1)
+            top, left = (HEIGHT - rows) // 2, (WIDTH - columns) // 2
+            window, place = np.s_[y:y + rows, x:x + columns], np.s_[..., top:top + rows, left:left + columns]
+            cells[job][place] = row[4:4 + area * CHANNELS].reshape(height, width, CHANNELS)[window][..., :OWN].transpose(2, 0, 1)
             ids = row[4 + area * CHANNELS:].reshape(height, width)[window]
-            truth[job] = np.where(ids < 0, DONT_CARE, ids)
+            truth[job] = DONT_CARE
+            truth[job][place] = np.where(ids < 0, DONT_CARE, ids)
         (store / f"inputs{part}").unlink()
         (store / f"jobs{part}").unlink()
     done.write_text(listed)
+
+
+def check_twin(cells):
+    """Stores lack the channels that with_surroundings() computes: it must compute what the library does."""
+    import torch
+
+    whole = torch.from_numpy(cells.transpose(2, 0, 1)[None] / UNIT).float()
+    off = (with_surroundings(whole[:, :OWN]) - whole).abs().max()
+    if off > 1 / UNIT:
+        raise SystemExit(f"fit_hints.py: channels {OWN} to {CHANNELS - 1} are not those of the library: off by {off:.3f}")
 
 
 class Frames:
@@ -113,6 +132,31 @@ class Frames:
         store = np.searchsorted(self.starts, number, "right") - 1
         at = number - self.starts[store]
         return torch.from_numpy(self.cells[store][at]), torch.from_numpy(self.truth[store][at])
+
+
+def with_surroundings(own, inside=None):
+    """The channels of cells, and those that compare them with the cells around: hint_input() computes the same. `inside`:
+    cells of the image; without it, those that are not padding."""
+    import torch
+    from torch.nn import functional as F
+
+    def around(values):
+        before = F.pad(values, (REACH + 1, REACH)).cumsum(-1)
+        values = before[..., 2 * REACH + 1:] - before[..., :-2 * REACH - 1]
+        before = F.pad(values, (0, 0, REACH + 1, REACH)).cumsum(-2)
+        return before[..., 2 * REACH + 1:, :] - before[..., :-2 * REACH - 1, :]
+
+    counts = ((own != 0).any(1) if inside is None else inside)[:, None].float()
+    matched = (own[:, 4:5] > 0).float()
+    look = own[:, :3] * counts
+    count, of_matched, disparities, looks, squares = around(torch.cat(
+        [counts, matched, own[:, 3:4] * matched, look, look ** 2], 1)).split((1, 1, 1, 3, 3), 1)
+    mean = looks / count.clamp(min=0.5)
+    spread = (squares / count.clamp(min=0.5) - mean ** 2).clamp(min=0).sqrt()
+    least = torch.tensor(LEAST_SPREADS, device=own.device)[:, None, None]
+    nearer = 8 * matched * (own[:, 3:4] - disparities / of_matched.clamp(min=0.5))
+    relative = torch.cat([(look - mean * counts) / (spread + least), nearer], 1).clamp(-4, 4)
+    return torch.cat([own, relative], 1)
 
 
 # ---- samples
@@ -158,15 +202,17 @@ class Sampler:
         def moved(frame, to_x, to_y):
             return frame.index_select(-2, to_y[:, 0]).index_select(-1, to_x[0])
 
-        data = torch.stack([moved(frame, *to) for frame, *to in zip(cells, x, y)]).float()
-        data *= inside[:, None] / UNIT
+        data = torch.stack([moved(frame, *to) for frame, *to in zip(cells, x, y)])
+        inside &= (data != 0).any(1)  # in a flat image, there is nothing above and below
+        data = data * (inside[:, None] / UNIT)
         ids = torch.stack([moved(frame, *to) for frame, *to in zip(truth, x, y)]).long()
         ids[~inside] = DONT_CARE
         self.see_closer(data, scale, inside, narrower)
         for number in () if is_calm else (253, 254):
             self.paste(data, ids, number, uniform)
+        self.mark(data, ids, uniform)
         noise = torch.randn(BATCH, HEIGHT, WIDTH, generator=random, device=x.device)
-        data[:, 0] = data[:, 0] * uniform(0.8, 1.25) + uniform(-0.2, 0.2) + noise * uniform(0, 0.06)
+        data[:, 0] = data[:, 0] * uniform(0.8, 1.25) + uniform(-0.2, 0.2) + noise * uniform(0, 0.03)
         data[:, 1:3] *= uniform(0.7, 1.4)[:, None]
         data[:, [3, 7]] *= uniform(0.85, 1.15)[:, None]
         data[:, 5:7] *= uniform(0.8, 1.25)[:, None]
@@ -174,7 +220,7 @@ class Sampler:
         data[:, 5] *= without  # no floor
         data[:, 7] *= without
         data[:, 6] *= (uniform(0, 1) >= 0.1).float()  # no background
-        return data.contiguous(memory_format=torch.channels_last), self.targets(ids)
+        return with_surroundings(data, inside).contiguous(memory_format=torch.channels_last), self.targets(ids)
 
     def see_closer(self, all_data, scale, inside, narrower):
         """A crop as a camera with a narrower field of view would see it; recomputes the inputs that hint_input()
@@ -261,6 +307,35 @@ class Sampler:
         data[to[sample], :, y, x] = new
         ids[to[sample], y, x] = number
 
+    def mark(self, data, ids, uniform):
+        """Draws a flat round or rectangular mark, no object, where there may be floor: a lid, a drain, a sticker. At its rim,
+        and sometimes within, there are disparities of the floor."""
+        import torch
+
+        width = torch.exp(uniform(np.log(4), np.log(22)))
+        height = width * uniform(0.3, 1)
+        power = torch.where(uniform(0, 1) < 0.7, 2.0, 6.0)
+        border = torch.where(uniform(0, 1) < 0.5, 0.0, float(WIDTH)) + uniform(-8, 8)
+        x = self.across - torch.where(uniform(0, 1) < AT_BORDER, border, uniform(0, WIDTH))
+        y = self.down - uniform(0, HEIGHT)
+        radius = ((x / width).abs() ** power + (y / height).abs() ** power) ** (1 / power)
+        floor = (uniform(0, 1) < MARKS) & (ids == 0) & (data[:, 7] > 0)
+        floor &= (data[:, 4] == 0) | (data[:, 5].abs() < 0.35)
+        on_mark = floor & (radius <= 1)
+        rim = floor & ((radius - 1).abs() * height < 0.8)
+        sign = torch.where(uniform(0, 1) < 0.5, -1.0, 1.0)
+        data[:, 0] += on_mark * sign * uniform(0.2, 2)
+        for colour in (1, 2):
+            data[:, colour] += on_mark * data[:, 11] * uniform(-0.4, 0.4)
+        cells = (BATCH, HEIGHT, WIDTH)
+        data[:, 8] = torch.where(rim, torch.maximum(data[:, 8], uniform(0.2, 4) * uniform(0.6, 1, cells)), data[:, 8])
+        data[:, 9] = torch.where(rim & (uniform(0, 1, cells) < 0.7), uniform(0.3, 1, cells), data[:, 9])
+        seen = rim | (on_mark & (uniform(0, 1) < 0.5))
+        seen &= (data[:, 4] == 0) & (uniform(0, 1, cells) < uniform(0.5, 1))
+        off = uniform(-0.12, 0.12, cells)
+        for channel, value in ((3, data[:, 7]), (4, uniform(0.3, 1, cells)), (5, off), (6, off)):
+            data[:, channel] = torch.where(seen, value, data[:, channel])
+
     def targets(self, ids):
         """Per cell: object, outline, centre (2), log₂ of the size, root of the size, known."""
         import torch
@@ -301,7 +376,7 @@ def network(width):
         return nn.Sequential(nn.Conv2d(inputs, outputs, side, stride, side // 2, bias=False), nn.BatchNorm2d(outputs),
                              nn.ReLU())
 
-    first, second, third, last = (int(8 * round(width * n / 8)) for n in (FIRST, SECOND, THIRD, LAST))
+    first, second, third, fourth, last = (int(8 * round(width * n / 8)) for n in (FIRST, SECOND, THIRD, FOURTH, LAST))
 
     class Network(nn.Module):
         def __init__(self):
@@ -310,6 +385,7 @@ def network(width):
                 layer(CHANNELS, first, 2), layer(first, first), layer(first, second, 2), layer(second, second),
                 layer(second, third, 2), layer(third, third), layer(third, third),
                 layer(third, third, 2), layer(third, third), layer(third, third),
+                layer(third, fourth, 2), layer(fourth, fourth), layer(fourth, fourth), layer(fourth, third, 1, 1),
                 layer(third, third, 1, 1), layer(third, third), layer(third, second, 1, 1), layer(second, second),
                 layer(second, first, 1, 1), layer(first, last)])
             self.end = nn.Conv2d(last, 4 * len(STEPS_PER_UNIT), 1)
@@ -331,10 +407,12 @@ def network(width):
             half = run((0, 1), data)
             quarter = run((2, 3), half)
             eighth = run((4, 5, 6), quarter)
-            up = run((10,), run((7, 8, 9), eighth))
-            up = run((12,), run((11,), doubled(up, eighth)))
-            up = run((14,), run((13,), doubled(up, quarter)))
-            up = run((15,), doubled(up, half))
+            sixteenth = run((7, 8, 9), eighth)
+            up = run((10, 11, 12, 13), sixteenth)
+            up = run((14,), doubled(up, sixteenth))
+            up = run((15, 16), doubled(up, eighth))
+            up = run((17, 18), doubled(up, quarter))
+            up = run((19,), doubled(up, half))
             with torch.autocast(data.device.type, enabled=False):
                 return nn.functional.pixel_shuffle(self.end(up.float()), 2)
 
@@ -383,7 +461,7 @@ def of_library(net, path, frames):
     net.eval()
     with torch.no_grad():
         for number in np.linspace(0, 2 * len(frames) - 1, CALIBRATION).astype(int):
-            net(frames.take(number)[0][None].float() / UNIT)
+            net(with_surroundings(frames.take(number)[0][None].float() / UNIT))
         for hook in hooks:
             hook.remove()
         for step, old in zip(net.steps, olds):
@@ -398,6 +476,25 @@ def of_library(net, path, frames):
             norm.running_mean.copy_(mean / length)
             norm.running_var.copy_(variance / length ** 2)
     net.train()
+
+
+def towards_start(net, start, share, frames):
+    """Weights that are `share` of those of `start`, and the rest of those of `net`, with the statistics of batch normalisation
+    counted anew: a mean has less noise than either."""
+    import torch
+
+    with torch.no_grad():
+        for new, old in zip(net.state_dict().values(), start.state_dict().values()):
+            if new.dtype.is_floating_point:
+                new.lerp_(old.to(new.device), share)
+        for step in net.steps:
+            step[1].reset_running_stats()
+            step[1].momentum = None  # the mean of all batches
+        sampler = Sampler(frames, 1)  # as they are: without pasted objects
+        net.train()
+        for turn in range(COUNTED):
+            net(sampler.batch(1 + turn)[0])
+    return net.eval()
 
 
 def loss_of(output, truth, down, across):
@@ -464,19 +561,20 @@ def orthogonal_steps(filters, rate):
     return Orthogonal(filters, {"lr": rate})
 
 
-def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
-    """A network fitted to the frames; its weights are an exponential average over the last steps."""
+def fitted(frames, steps, width, checkpoint, start=None, rate=RATE, keep=0.0):
+    """A network fitted to the frames; its weights are an exponential average over the last steps, and `keep` of the start."""
     import torch
 
     torch.manual_seed(SEED)
     torch.set_num_threads(2)  # sums depend on it
     device = frames.device
-    net, mean = (network(width).to(device, memory_format=torch.channels_last) for _ in range(2))
+    net, mean, first_net = (network(width).to(device, memory_format=torch.channels_last) for _ in range(3))
     if start and start.suffix == ".bin":
         of_library(net, start, frames)
     elif start:
         net.load_state_dict(torch.load(start, map_location=device))
-    mean.load_state_dict(net.state_dict())
+    for other in (mean, first_net):
+        other.load_state_dict(net.state_dict())
     kept, new = ([v for v in one.state_dict().values() if v.dtype.is_floating_point] for one in (mean, net))
     digest = start and hashlib.sha256(start.read_bytes()).hexdigest()
     # A fit that goes on does not see again what the one before it saw.
@@ -524,7 +622,7 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE):
             torch.save({name: part.state_dict() for name, part in parts.items()}
                        | {"step": step + 1, "key": key}, unfinished)
             unfinished.replace(checkpoint)
-    return mean.cpu().eval()
+    return (towards_start(mean, first_net, keep, frames) if keep > 0 else mean).cpu().eval()
 
 
 def rounded(net, frames):
@@ -534,13 +632,11 @@ def rounded(net, frames):
     seen = [0.0] * len(net.steps)
     with torch.no_grad():
         for number in np.linspace(0, 2 * len(frames) - 1, CALIBRATION).astype(int):
-            net(frames.take(number)[0][None].cpu().float() / UNIT, seen)
+            net(with_surroundings(frames.take(number)[0][None].cpu().float() / UNIT), seen)
     # Summands need a common scale: the decoder's 1×1 layers use that of the encoder's.
-    for small, like in ((10, 6), (12, 3), (14, 1)):
+    for small, like in ((13, 9), (14, 6), (16, 3), (18, 1)):
         seen[small] = seen[like] = max(seen[small], seen[like])
     scales = [GREATEST / 2 / max(s, 1e-6) for s in seen]  # headroom: twice the largest activation seen
-    source = {0: UNIT, 15: scales[14], 13: scales[12], 11: scales[10]}
-    source |= {2: scales[1], 4: scales[3], 7: scales[6], 10: scales[9], 12: scales[11], 14: scales[13]}
     layers = []
     for i, step in enumerate([*net.steps, net.end]):
         end = i == len(net.steps)
@@ -557,7 +653,7 @@ def rounded(net, frames):
             gain = (norm.weight / torch.sqrt(norm.running_var + norm.eps)).detach().numpy().astype(np.float64)
             bias = norm.bias.detach().numpy() - norm.running_mean.detach().numpy() * gain
             weight, into = weight * gain[:, None, None, None], scales[i]
-        of = scales[15] if end else source.get(i, scales[i - 1])
+        of = scales[i - 1] if i else UNIT
         unit = np.maximum(np.abs(weight).max(axis=(1, 2, 3)), 1e-9) / 127
         whole = np.round(weight / unit[:, None, None, None]).astype(np.int64)
         whole_bias = np.round(bias / unit * of).astype(np.int64)
@@ -601,7 +697,7 @@ def fit(arguments):
     print(f"{len(frames)} frames, {arguments.steps} steps, on {device}", flush=True)
     arguments.work.mkdir(parents=True, exist_ok=True)
     net = fitted(frames, arguments.steps, arguments.width, arguments.work / f"{arguments.name}.checkpoint",
-                 arguments.start, arguments.rate)
+                 arguments.start, arguments.rate, arguments.keep)
     torch.save(net.state_dict(), arguments.work / f"{arguments.name}.pt")
     layers = rounded(net, frames)
     write(layers, arguments.work / arguments.name)
@@ -626,8 +722,11 @@ def main():
                          help="weights of an earlier fit (.pt) or of the library (hints.bin); the fit goes on from it")
     command.add_argument("--steps", type=int, default=22000)
     command.add_argument("--rate", type=float, default=RATE, help="by which filters turn in a step, at most; less where a fit goes on")
+    command.add_argument("--keep", type=float, default=0.0, help="share of the start's weights in the result")
     command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
     arguments = parser.parse_args()
+    if arguments.command == "fit" and arguments.keep > 0 and not arguments.start:
+        parser.error("--keep: found no --start, of which a share could be kept")
     if arguments.command == "fit":
         return fit(arguments)
     gather(arguments.tool, arguments.store, [f for folder in arguments.folders for f in frames_in(folder)])

@@ -17,25 +17,11 @@ namespace {
 
 using namespace kernels;
 
-constexpr int kGrain = 4;      // rows
-constexpr int kMinSide = 8;    // cells
-constexpr double kPixels = 4;  // of a cell
+constexpr int kGrain = 4;       // rows
+constexpr int kMinSide = 8;     // cells
+constexpr double kPixels = 4;   // of a cell
+constexpr int kLongGrain = 24;  // rows: a range of compare_with_surroundings() begins with 2 · kAround others
 constexpr double kNone = -std::numeric_limits<double>::infinity();
-
-enum Channel : int {
-  kMeanBrightness,
-  kMeanBlue,
-  kMeanRed,
-  kMeanDisparity,
-  kShareMatched,
-  kAboveGround,
-  kBeforeBackground,
-  kGroundThere,
-  kMeanEdge,
-  kShareTextured,
-  kHeightInImage,
-  kHasColour
-};
 
 /// The pixels of each cell along one axis: first … last − 1, those with pixel · cells / pixels = cell; with
 /// fewer pixels than cells, the pixel at the cell's place.
@@ -137,10 +123,10 @@ class CellDescriber {
     run_.mean(whole(kBrightness), areas, cells_, 0, means.brightness.row(y));
     run_.mean(real(kDisparity), matched, cells_, kNone, means.disparity.row(y));
     run_.mean(real(kGround), areas, cells_, 0, means.ground.row(y));
-    const auto put = [&](Channel channel, double unit, double least, double most) {
+    const auto put = [&](HintChannel channel, double unit, double least, double most) {
       run_.put(means_.data(), cells_, {0, unit, least, most}, kHintChannels, out + channel);
     };
-    const auto put_mean = [&](const double* sums, const double* counts, Channel channel, double unit,
+    const auto put_mean = [&](const double* sums, const double* counts, HintChannel channel, double unit,
                               double least, double most) {
       run_.mean(sums, counts, cells_, 0, means_.data());
       put(channel, unit, least, most);
@@ -210,6 +196,42 @@ double nearest_px(View<const double> disparities) {
   return std::max(1.0, *at);
 }
 
+/// The channels of the cells of row y.
+std::int16_t* cells_of(Image<std::int16_t>& input, int y) {
+  return input.row(y + 1) + kHintChannels;
+}
+
+/// Writes the channels that compare a cell with those around it, in rows first … last − 1.
+void compare_with_surroundings(Image<std::int16_t>& input, Size cells, int first, int last,
+                               const HintKernels& run) {
+  const std::size_t padded = slot(cells.width + 2 * kAround);
+  std::vector<std::int32_t> memory(kChannelSums * (padded + slot(cells.width)));
+  std::vector<std::int32_t> blocks(2 * slot(cells.width + kWindow));
+  std::vector<double> counts(slot(cells.width));
+  ChannelSums columns{};
+  ChannelSums sums{};
+  for (std::size_t i = 0; i < kChannelSums; ++i) {
+    columns.at(i) = memory.data() + i * padded + kAround;
+    sums.at(i) = memory.data() + kChannelSums * padded + i * slot(cells.width);
+  }
+  const auto add = [&](int y, int sign) {
+    if (y >= 0 && y < cells.height) run.add_cells(cells_of(input, y), cells.width, sign, columns);
+  };
+  const auto cut = [](int at, int count) {  // cells of the window around `at` that are among `count`
+    return std::min(at + kAround, count - 1) - std::max(at - kAround, 0) + 1;
+  };
+  for (int y = first - kAround; y < first + kAround; ++y) add(y, 1);
+  for (int y = first; y < last; ++y) {
+    add(y + kAround, 1);
+    for (std::size_t i = 0; i < kChannelSums; ++i)
+      run.sum_around(columns.at(i), cells.width, blocks.data(), sums.at(i));
+    const int rows = cut(y, cells.height);
+    for (int x = 0; x < cells.width; ++x) counts[slot(x)] = rows * cut(x, cells.width);
+    run.compare(sums, counts.data(), cells.width, cells_of(input, y));
+    add(y - kAround, -1);
+  }
+}
+
 }  // namespace
 
 Size hint_cells(Size image) {
@@ -230,27 +252,28 @@ Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues
   Image<std::int16_t> input = framed_image(cells, kHintChannels, exec.pool);
   Means means(cells, exec.pool);
   std::vector<RowTotal> totals(slot(cells.height));
-  const auto row = [&](int y) { return input.row(y + 1) + kHintChannels; };
   parallel_for(exec, cells.height, kGrain, [&](int first, int last) {
     CellDescriber describing(edges, cues, across, exec);
     for (int y = first; y < last; ++y) {
       describing.sum_up(down.first[slot(y)], down.last[slot(y)]);
       totals[slot(y)] = describing.total();
-      describing.describe(y, cells.height, means, row(y));
+      describing.describe(y, cells.height, means, cells_of(input, y));
     }
   });
   const Brightness brightness = brightness_of(totals);
   const double nearest = nearest_px(means.disparity);
   const HintKernels& run = hint_kernels(exec);
   for (int y = 0; y < cells.height; ++y) {
-    const auto put = [&](const double* values, Channel channel, double zero, double unit, double least,
+    const auto put = [&](const double* values, HintChannel channel, double zero, double unit, double least,
                          double most) {
-      run.put(values, cells.width, {zero, unit, least, most}, kHintChannels, row(y) + channel);
+      run.put(values, cells.width, {zero, unit, least, most}, kHintChannels, cells_of(input, y) + channel);
     };
     put(means.brightness.row(y), kMeanBrightness, brightness.mean, brightness.spread, -4, 4);
     put(means.disparity.row(y), kMeanDisparity, 0, nearest, 0, 2);
     put(means.ground.row(y), kGroundThere, 0, nearest, 0, 2);
   }
+  parallel_for(exec, cells.height, kLongGrain,
+               [&](int first, int last) { compare_with_surroundings(input, cells, first, last, run); });
   return input;
 }
 

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 //
 // No include guard: compiled once for each target.
+#include <cairn/core/sum_along-inl.hpp>
+
 namespace cairn::kernels::CAIRN_KERNEL_TARGET {
 namespace {
 
@@ -93,22 +95,75 @@ inline void mean(const double* sums, const double* counts, int cells, double non
   }
 }
 
-inline void put(const double* values, int cells, const ChannelScale& scale, int stride,
-                std::int16_t* CAIRN_RESTRICT out) {
-  const auto [zero, unit, least, most] = scale;
+/// In 1/64, rounded, halves up.
+inline std::int16_t in_steps(double value, double least, double most) {
   // For positive numbers truncation is faster than floor(), and exact.
   constexpr int kPositive = 1024;
   constexpr double kSteps = 64;
+  value = value < least ? least : value;
+  value = most < value ? most : value;
+  return static_cast<std::int16_t>(static_cast<int>(value * kSteps + (0.5 + kPositive)) - kPositive);
+}
+
+inline void put(const double* values, int cells, const ChannelScale& scale, int stride,
+                std::int16_t* CAIRN_RESTRICT out) {
+  const auto [zero, unit, least, most] = scale;
+  for (int c = 0; c < cells; ++c) out[c * stride] = in_steps((values[c] - zero) / unit, least, most);
+}
+
+inline void add_cells(const std::int16_t* row, int cells, int sign, const ChannelSums& columns) {
+  for (std::size_t k = 0; k < kLooks; ++k) {
+    const std::int16_t* const values = row + kMeanBrightness + k;
+    std::int32_t* CAIRN_RESTRICT const sums = columns[kLookSums + k];
+    std::int32_t* CAIRN_RESTRICT const squares = columns[kSquareSums + k];
+    for (int c = 0; c < cells; ++c) {
+      const int value = values[c * kHintChannels];
+      sums[c] += sign * value;
+      squares[c] += sign * value * value;
+    }
+  }
+  std::int32_t* CAIRN_RESTRICT const disparities = columns[kDisparitySum];
+  std::int32_t* CAIRN_RESTRICT const matched = columns[kMatchedCells];
   for (int c = 0; c < cells; ++c) {
-    double value = (values[c] - zero) / unit;
-    value = value < least ? least : value;
-    value = most < value ? most : value;
-    out[c * stride] =
-        static_cast<std::int16_t>(static_cast<int>(value * kSteps + (0.5 + kPositive)) - kPositive);
+    const std::int16_t* const cell = row + c * kHintChannels;
+    const int is_matched = cell[kShareMatched] > 0 ? sign : 0;
+    disparities[c] += is_matched * cell[kMeanDisparity];
+    matched[c] += is_matched;
   }
 }
 
-inline constexpr HintKernels kHintKernels{add_row, sum_cells, mean, put};
+inline void sum_around(const std::int32_t* columns, int cells, std::int32_t* blocks, std::int32_t* sums) {
+  sum_along(columns - kAround, cells, kWindow, blocks, sums);
+}
+
+/// The sums are whole numbers; they and the products below are exact in a double, so no root is of a negative number.
+inline void compare(const ChannelSums& sums, const double* counts, int cells, std::int16_t* row) {
+  // Below these, in 1/64, the spread of a plain surface would be noise.
+  constexpr std::array<double, kLooks> kLeastSpread{5, 10, 10};
+  constexpr double kDisparityUnit = 8;  // in 1/64 of the nearest disparity
+  constexpr double kLimit = 4;
+  for (std::size_t k = 0; k < kLooks; ++k) {
+    const std::int32_t* const values = sums[kLookSums + k];
+    const std::int32_t* const squares = sums[kSquareSums + k];
+    const std::int16_t* const in = row + kMeanBrightness + k;
+    std::int16_t* const out = row + kRelativeBrightness + k;
+    for (int c = 0; c < cells; ++c) {
+      const double sum = values[c];
+      const double spread = std::sqrt(counts[c] * squares[c] - sum * sum);
+      const double value = counts[c] * in[c * kHintChannels] - sum;
+      out[c * kHintChannels] = in_steps(value / (spread + counts[c] * kLeastSpread[k]), -kLimit, kLimit);
+    }
+  }
+  for (int c = 0; c < cells; ++c) {
+    std::int16_t* const cell = row + c * kHintChannels;
+    const double count = sums[kMatchedCells][c];
+    const double value = count * cell[kMeanDisparity] - sums[kDisparitySum][c];
+    const std::int16_t nearer = in_steps(value / (kDisparityUnit * (count > 0 ? count : 1)), -kLimit, kLimit);
+    cell[kRelativeDisparity] = cell[kShareMatched] > 0 ? nearer : std::int16_t{0};
+  }
+}
+
+inline constexpr HintKernels kHintKernels{add_row, sum_cells, mean, put, add_cells, sum_around, compare};
 
 }  // namespace
 }  // namespace cairn::kernels::CAIRN_KERNEL_TARGET

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cairn/regions/hint_kernels.hpp>
 #include <cairn/regions/region_cues.hpp>
+#include <cmath>
 
 #define CAIRN_KERNELS "cairn/regions/hint_kernels-inl.hpp"
 #include <cairn/core/each_target-inl.hpp>

@@ -5,11 +5,33 @@
 #include <array>
 #include <cairn/core/exec.hpp>
 #include <cairn/core/image.hpp>
+#include <cairn/regions/object_hints.hpp>
 #include <cstdint>
 
 /// The kernels of hint_input(), per row of pixels or cells; one set per instruction set. Private to the
 /// library.
 namespace cairn::kernels {
+
+/// The channels of a cell.
+enum HintChannel : int {
+  kMeanBrightness,
+  kMeanBlue,
+  kMeanRed,
+  kMeanDisparity,
+  kShareMatched,
+  kAboveGround,
+  kBeforeBackground,
+  kGroundThere,
+  kMeanEdge,
+  kShareTextured,
+  kHeightInImage,
+  kHasColour,
+  kRelativeBrightness,
+  kRelativeBlue,
+  kRelativeRed,
+  kRelativeDisparity
+};
+static_assert(kRelativeDisparity + 1 == kHintChannels);
 
 /// One row of the image.
 struct HintPixels {
@@ -48,6 +70,21 @@ struct CellSums {
   std::array<double*, kRealSums> real{};
 };
 
+/// A cell is compared with those of a window around it.
+inline constexpr int kAround = 8;
+inline constexpr int kWindow = 2 * kAround + 1;
+/// Sums over cells: of brightness and the two colours, of their squares, of the disparities of the matched cells,
+/// and the number of these.
+inline constexpr std::size_t kLooks = 3;
+enum ChannelSum : std::size_t {
+  kLookSums,
+  kSquareSums = kLooks,
+  kDisparitySum = 2 * kLooks,
+  kMatchedCells,
+  kChannelSums
+};
+using ChannelSums = std::array<std::int32_t*, kChannelSums>;
+
 /// The scale of a channel: (value − zero) / unit, limited to least … most. Precondition: least ≥ −16.
 struct ChannelScale {
   double zero;
@@ -68,6 +105,13 @@ struct HintKernels {
   void (*mean)(const double* sums, const double* counts, int cells, double none, double* out);
   /// By `scale`, in 1/64, rounded, halves up, to every `stride`th of `out`.
   void (*put)(const double* values, int cells, const ChannelScale& scale, int stride, std::int16_t* out);
+  /// Adds a row of cells, `sign` (1 or −1) times, to sums per column.
+  void (*add_cells)(const std::int16_t* row, int cells, int sign, const ChannelSums& columns);
+  /// The sums of `columns` over the window of each cell. `columns` has kAround zeros more on both sides; `blocks`:
+  /// memory for 2 · (cells + kWindow) numbers.
+  void (*sum_around)(const std::int32_t* columns, int cells, std::int32_t* blocks, std::int32_t* sums);
+  /// Writes the channels that compare a cell with its window, for a row of cells; `sums`, `counts`: of these windows.
+  void (*compare)(const ChannelSums& sums, const double* counts, int cells, std::int16_t* row);
 };
 
 /// The functions of this build for `target`, nullptr if it has none. Never nullptr for Target::scalar.

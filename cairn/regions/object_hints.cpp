@@ -89,6 +89,10 @@ enum Layer : std::size_t {
   kEncode16a,
   kEncode16b,
   kEncode16c,
+  kEncode32a,
+  kEncode32b,
+  kEncode32c,
+  kDecode16,
   kDecode8a,
   kDecode8b,
   kDecode4a,
@@ -228,7 +232,9 @@ Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& net
   const Activations half = layer(kEncode2b, layer(kEncode2a, in));
   const Activations quarter = layer(kEncode4b, layer(kEncode4a, half));
   const Activations eighth = layer(kEncode8c, layer(kEncode8b, layer(kEncode8a, quarter)));
-  Activations up = layer(kEncode16c, layer(kEncode16b, layer(kEncode16a, eighth)));
+  const Activations sixteenth = layer(kEncode16c, layer(kEncode16b, layer(kEncode16a, eighth)));
+  Activations up = layer(kEncode32c, layer(kEncode32b, layer(kEncode32a, sixteenth)));
+  up = doubled_and_added(layer(kDecode16, up), sixteenth, exec);
   up = layer(kDecode8b, doubled_and_added(layer(kDecode8a, up), eighth, exec));
   up = layer(kDecode4b, doubled_and_added(layer(kDecode4a, up), quarter, exec));
   up = layer(kDecode2b, doubled_and_added(layer(kDecode2a, up), half, exec));

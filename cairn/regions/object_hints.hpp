@@ -33,8 +33,8 @@ struct ObjectHint {
 Size hint_cells(Size image);
 
 /// The number of input channels of a cell: brightness, colour, disparity, distance from ground and background,
-/// edges … (docs/stages/object_hints.md lists them).
-inline constexpr int kHintChannels = 12;
+/// edges … and how some of them differ from the cells around (docs/stages/object_hints.md lists them).
+inline constexpr int kHintChannels = 16;
 /// The input of the network: hint_cells() with a frame of zeros, interleaved channels in 1/64. `edges`:
 /// superpixel_edges(). `cues.hints` is not used.
 Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues, const Exec& exec);
@@ -46,7 +46,7 @@ struct HintLayer {
   int least = 0;             // output: 0 for a rectifier
   [[nodiscard]] constexpr std::size_t weights() const { return slot(side * side * inputs * outputs); }
 };
-inline constexpr std::size_t kHintLayers = 17;
+inline constexpr std::size_t kHintLayers = 21;
 
 /// The fitted weights, in the order in which the kernels read them.
 class HintNetwork {
@@ -75,7 +75,7 @@ HintNetwork load_network(std::span<const std::byte> file);
 /// The network of the library, fitted by lab/fit_hints.py.
 const HintNetwork& hint_network();
 
-/// One hint for each of hint_cells(), from hint_input(). An encoder halves the resolution four times; a decoder
+/// One hint for each of hint_cells(), from hint_input(). An encoder halves the resolution five times; a decoder
 /// doubles it again and adds the encoder's activations of the same resolution (Ronneberger et al. 2015,
 /// "U-Net"). All sums are integers.
 Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& network, const Exec& exec);

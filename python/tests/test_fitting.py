@@ -151,7 +151,7 @@ def hints(monkeypatch):
 
 def store(hints, folder, ids):
     """Two frames, in colour and in grey, with the objects `ids`: (id, columns) of a band in the middle."""
-    cells = np.zeros((4, hints.CHANNELS, hints.HEIGHT, hints.WIDTH), np.int16)
+    cells = np.zeros((4, hints.OWN, hints.HEIGHT, hints.WIDTH), np.int16)
     cells[:, 4] = hints.UNIT
     cells[::2, 11] = hints.UNIT
     truth = np.zeros((4, hints.HEIGHT, hints.WIDTH), np.uint8)
@@ -161,13 +161,17 @@ def store(hints, folder, ids):
     np.save(folder / "truth.npy", truth)
 
 
-def test_of_a_larger_frame_a_window_is_gathered(hints, tmp_path, monkeypatch):
-    width, height = hints.WIDTH + 40, hints.HEIGHT + 30
+@pytest.mark.parametrize("more_rows", (30, -24))  # a larger image, a flat one
+def test_a_window_is_gathered(hints, tmp_path, monkeypatch, more_rows):
+    torch = pytest.importorskip("torch")
+    width, height = hints.WIDTH + 40, hints.HEIGHT + more_rows
     down, across = np.mgrid[:height, :width]
+    own = np.zeros((hints.OWN, height, width), np.int16)
+    own[0], own[1] = across + 1, down + 1
+    recorded = np.floor(hints.with_surroundings(torch.from_numpy(own[None] / hints.UNIT).float())[0].numpy() * hints.UNIT + 0.5)
 
     def run_tool(tool, work, jobs, files, *options, parts):
-        cells = np.zeros((height, width, hints.CHANNELS), np.int16)
-        cells[..., 0], cells[..., 1] = across, down
+        cells = recorded.transpose(1, 2, 0).astype(np.int16)
         ids = np.where(across < 90, 7, -1).astype(np.int16)
         for part in range(parts):
             mine = range(len(jobs[part::parts]))
@@ -179,11 +183,18 @@ def test_of_a_larger_frame_a_window_is_gathered(hints, tmp_path, monkeypatch):
     monkeypatch.setattr(hints.os, "cpu_count", lambda: 8)  # more than there are jobs
     hints.gather("tool", tmp_path, ["a", "b", "c"])
     cells, truth = np.load(tmp_path / "cells.npy"), np.load(tmp_path / "truth.npy")
+    top = max(0, -more_rows // 2)
+    assert (cells[:, :, :top] == 0).all() and (truth[:, :top] == hints.DONT_CARE).all()
+    rows = min(height, hints.HEIGHT)
+    cells, truth = cells[:, :, top:top + rows], truth[:, top:top + rows]
     first = cells[:, 0, 0, 0], cells[:, 1, 0, 0]
     assert len(cells) == 6 and len(set(zip(*map(tuple, first)))) > 3
-    assert (cells[:, 0] == first[0][:, None, None] + across[:hints.HEIGHT, :hints.WIDTH]).all()
-    assert (cells[:, 1] == first[1][:, None, None] + down[:hints.HEIGHT, :hints.WIDTH]).all()
-    assert (truth == np.where(cells[:, 0] < 90, 7, hints.DONT_CARE)).all()
+    assert (cells[:, 0] == first[0][:, None, None] + across[:rows, :hints.WIDTH]).all()
+    assert (cells[:, 1] == first[1][:, None, None] + down[:rows, :hints.WIDTH]).all()
+    assert (truth == np.where(cells[:, 0] < 91, 7, hints.DONT_CARE)).all()
+    recorded[13] += 2  # a library that computes something else
+    with pytest.raises(SystemExit, match="not those of the library"):
+        hints.gather("tool", tmp_path, ["d"])
 
 
 def test_every_frame_comes_once_in_a_round(hints):
@@ -211,7 +222,7 @@ def test_a_fit_goes_on_from_the_networks_integers(hints, tmp_path, width):
     again = hints.network(width)
     hints.of_library(again, tmp_path / "hints.bin", frames)
     again.eval()
-    data = torch.stack([frames.take(number)[0] for number in (0, 1)]).float() / hints.UNIT
+    data = hints.with_surroundings(torch.stack([frames.take(number)[0] for number in (0, 1)]).float() / hints.UNIT)
     with torch.no_grad():
         expected, found = net(data), again(data)
     assert (found - expected).abs().max() < 0.05 * expected.abs().max()  # but for the rounding
@@ -251,7 +262,7 @@ def test_a_pasted_object_hides_what_is_behind_it(hints, tmp_path, monkeypatch):
     store(hints, tmp_path, [(1, slice(60, 90))])
     sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
     random = torch.Generator().manual_seed(1)
-    data = torch.zeros(hints.BATCH, hints.CHANNELS, hints.HEIGHT, hints.WIDTH)
+    data = torch.zeros(hints.BATCH, hints.OWN, hints.HEIGHT, hints.WIDTH)
     data[:, 3], data[:, 4] = 0.5, 1
     data[:, 0] = torch.arange(hints.BATCH)[:, None, None]  # brightness says whose cells they are
     before = data.clone()
@@ -265,11 +276,44 @@ def test_a_pasted_object_hides_what_is_behind_it(hints, tmp_path, monkeypatch):
     assert (data[unchanged] == before[unchanged]).all()
 
 
+def test_a_mark_lies_flat_on_the_floor(hints, tmp_path, monkeypatch):
+    torch = pytest.importorskip("torch")
+    monkeypatch.setattr(hints, "MARKS", 1)
+    store(hints, tmp_path, [(1, slice(60, 90))])
+    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
+    random = torch.Generator().manual_seed(1)
+    data = torch.zeros(hints.BATCH, hints.OWN, hints.HEIGHT, hints.WIDTH)
+    data[:, 7, 60:] = 0.5  # the floor
+    before = data.clone()
+    ids = torch.from_numpy(np.load(tmp_path / "truth.npy")[:1].astype(np.int64)).repeat(hints.BATCH, 1, 1)
+    free = (ids == 0) & (data[:, 7] > 0)
+    sampler.mark(data, ids, lambda low, high, shape=(hints.BATCH, 1, 1):
+                 low + (high - low) * torch.rand(*shape, generator=random))
+    changed = (data != before).any(1)
+    assert changed.flatten(1).any(1).sum() > hints.BATCH / 3 and (free | ~changed).all()
+    matched = data[:, 4] > 0
+    assert matched.any() and (data[:, 3][matched] == 0.5).all() and (data[:, 5][matched].abs() < 0.2).all()
+    assert (data[:, 7] == before[:, 7]).all()
+
+
+def test_of_the_start_a_share_is_kept(hints, tmp_path, monkeypatch):
+    torch = pytest.importorskip("torch")
+    monkeypatch.setattr(hints, "BATCH", 4)
+    monkeypatch.setattr(hints, "COUNTED", 2)
+    store(hints, tmp_path, [(1, slice(20, 70))])
+    frames = hints.Frames([tmp_path], 10, torch.device("cpu"))
+    start, net = hints.network(1 / 3), hints.network(1 / 3)
+    expected = 0.25 * start.end.weight + 0.75 * net.end.weight
+    mean = hints.towards_start(net, start, 0.25, frames)
+    assert torch.allclose(mean.end.weight, expected) and not mean.training
+    assert (mean.steps[0][1].running_mean != 0).any()  # counted anew
+
+
 def test_a_close_view_has_the_input_of_a_narrow_lens(hints, tmp_path):
     torch = pytest.importorskip("torch")
     store(hints, tmp_path, [])
     sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
-    data = torch.zeros(hints.BATCH, hints.CHANNELS, hints.HEIGHT, hints.WIDTH)
+    data = torch.zeros(hints.BATCH, hints.OWN, hints.HEIGHT, hints.WIDTH)
     inside = torch.ones(hints.BATCH, hints.HEIGHT, hints.WIDTH, dtype=torch.bool)
     inside[:, :, :40] = False
     for channel, value in ((0, 2.0), (3, 0.25), (4, 1.0), (5, 0.5)):

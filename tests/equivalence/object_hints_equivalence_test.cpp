@@ -37,6 +37,7 @@ HintNumbers random_numbers(std::uint32_t seed, int least_channels = 8, int most_
   const int half = channels();
   const int quarter = channels();
   const int eighth = channels();
+  const int sixteenth = channels();
   const int a = channels();
   const int b = channels();
   HintNumbers numbers;
@@ -49,8 +50,12 @@ HintNumbers random_numbers(std::uint32_t seed, int least_channels = 8, int most_
                     {b, eighth, 3, 1, 0},
                     {eighth, a, 3, 2, 0},
                     {a, b, 3, 1, 0},
+                    {b, sixteenth, 3, 1, 0},
+                    {sixteenth, b, 3, 2, 0},
                     {b, a, 3, 1, 0},
-                    {a, eighth, 1, 1, 0},
+                    {a, b, 3, 1, 0},
+                    {b, sixteenth, 1, 1, 0},
+                    {sixteenth, eighth, 1, 1, 0},
                     {eighth, b, 3, 1, 0},
                     {b, quarter, 1, 1, 0},
                     {quarter, a, 3, 1, 0},
@@ -133,7 +138,8 @@ support::RegionScene random_scene(Size size, std::uint32_t seed) {
 
 TEST(HintInput, EqualsItsDefinitionOnEveryTarget) {
   std::uint32_t seed = 1;
-  for (const Size size : {Size{320, 240}, {97, 61}, {200, 31}, {643, 120}, {40, 300}, {1, 1}}) {
+  for (const Size size :
+       {Size{320, 240}, {97, 61}, {200, 31}, {643, 120}, {40, 300}, {3, 200}, {200, 3}, {1, 1}}) {
     for (int i = 0; i < 3; ++i, ++seed) {
       SCOPED_TRACE(seed);
       const support::RegionScene scene = random_scene(size, seed);

@@ -133,6 +133,38 @@ Cell cell_of(View<const std::uint16_t> edges, const Cues& cues, Size cells, int 
   return cell;
 }
 
+/// Channels 12 to 15 of a cell, from the others of the cells around it.
+void tell_surroundings(Image<std::int16_t>& input, Size cells, int x, int y) {
+  const auto at = [&](int column, int row, int channel) -> std::int16_t& {
+    return input((column + 1) * kHintChannels + channel, row + 1);
+  };
+  std::array<Mean, 3> of_channel;
+  std::array<Mean, 3> squares;
+  Mean disparity;
+  for (int v = std::max(0, y - 8); v <= std::min(cells.height - 1, y + 8); ++v) {
+    for (int u = std::max(0, x - 8); u <= std::min(cells.width - 1, x + 8); ++u) {
+      for (int c = 0; c < 3; ++c) {
+        const double value = at(u, v, c);
+        of_channel.at(slot(c)).add(value);
+        squares.at(slot(c)).add(value * value);
+      }
+      if (at(u, v, 4) > 0) disparity.add(double{1} * at(u, v, 3));
+    }
+  }
+  const auto tell = [&](int channel, double value) {
+    at(x, y, channel) = static_cast<std::int16_t>(std::floor(std::clamp(value, -4.0, 4.0) * 64 + 0.5));
+  };
+  for (int c = 0; c < 3; ++c) {
+    const Mean& mean = of_channel.at(slot(c));
+    // Times the number of cells: whole numbers under the root.
+    const double n = mean.count;
+    const double spread = std::sqrt(n * squares.at(slot(c)).sum - mean.sum * mean.sum);
+    tell(12 + c, (n * at(x, y, c) - mean.sum) / (spread + n * (c == 0 ? 5 : 10)));
+  }
+  const double n = disparity.count;
+  tell(15, at(x, y, 4) > 0 ? (n * at(x, y, 3) - disparity.sum) / (8 * n) : 0);
+}
+
 }  // namespace
 
 Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues) {
@@ -177,6 +209,9 @@ Image<std::int16_t> hint_input(View<const std::uint16_t> edges, const Cues& cues
       tell(cues.left.rgb.empty() ? 0 : 1, 0, 1);
     }
   }
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) tell_surroundings(input, size, x, y);
+  }
   return input;
 }
 
@@ -187,7 +222,9 @@ Image<ObjectHint> hint_objects(View<const std::int16_t> input, const HintNumbers
       cells, kHintChannels, [&](int x, int y, int c) { return input((x + 1) * kHintChannels + c, y + 1); })));
   const Volume quarter = next(next(half));
   const Volume eighth = next(next(next(quarter)));
-  Volume up = next(next(next(eighth)));
+  const Volume sixteenth = next(next(next(eighth)));
+  Volume up = next(next(next(sixteenth)));
+  up = doubled_and_added(next(up), sixteenth);
   for (const Volume* like : {&eighth, &quarter, &half}) up = next(doubled_and_added(next(up), *like));
   const Volume outputs = next(up);
   Image<ObjectHint> hints(cells);

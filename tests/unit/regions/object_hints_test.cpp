@@ -71,6 +71,7 @@ TEST(HintInput, MeasuresEachCell) {
   EXPECT_EQ(channel(input, 10, 0, 10), -64);
   EXPECT_EQ(channel(input, 10, 60, 10), 0);
   EXPECT_EQ(channel(input, 10, 60, 11), 64);
+  for (const int c : {12, 13, 14, 15}) EXPECT_EQ(channel(input, 10, 60, c), 0) << "like its surroundings";
   for (int c = 0; c < kHintChannels; ++c) {
     EXPECT_EQ(channel(input, -1, 60, c), 0);
     EXPECT_EQ(channel(input, 160, 60, c), 0);
@@ -79,10 +80,29 @@ TEST(HintInput, MeasuresEachCell) {
   }
 }
 
+TEST(HintInput, ComparesEachCellWithItsSurroundings) {
+  RegionScene scene = two_depths();
+  scene.gray = Image<Gray>({320, 240}, Gray{20}, {});
+  // A faint thing in the dark, and a bright window far from it.
+  for (int y = 100; y < 140; ++y) {
+    for (int x = 40; x < 56; ++x) scene.gray(x, y) = Gray{24};
+    for (int x = 250; x < 290; ++x) scene.gray(x, y) = Gray{255};
+  }
+  const Image<std::int16_t> input = hint_input(scene.superpixels.edges, scene.cues(), {});
+  EXPECT_EQ(channel(input, 24, 60, 0), -1) << "hardly brighter, seen from the whole image";
+  EXPECT_EQ(channel(input, 34, 60, 0), -8);
+  EXPECT_EQ(channel(input, 24, 60, 12), 28);
+  EXPECT_EQ(channel(input, 34, 60, 12), -7);
+  EXPECT_EQ(channel(input, 71, 60, 15), 0) << "nothing else is around";
+  EXPECT_LT(channel(input, 72, 60, 15), 0) << "something nearer is, 8 cells away";
+  EXPECT_EQ(channel(input, 79, 60, 15), -120);
+  EXPECT_EQ(channel(input, 80, 60, 15), 120);
+}
+
 TEST(HintInput, OfGreyImagesHasNoColour) {
   const RegionScene scene = two_depths();
   const Image<std::int16_t> input = hint_input(scene.superpixels.edges, scene.cues(), {});
-  for (const int c : {1, 2, 11}) EXPECT_EQ(channel(input, 80, 60, c), 0);
+  for (const int c : {1, 2, 11, 13, 14}) EXPECT_EQ(channel(input, 80, 60, c), 0);
 }
 
 TEST(HintInput, IsTheSameOnAnyNumberOfThreads) {
