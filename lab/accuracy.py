@@ -264,23 +264,22 @@ def splits(data, threads):
     return f"""## Fit and validation
 
 Network and trees were fitted to the sets marked *fit* and to [worlds](worlds.md), so results there are optimistic; [fitted models](fitting.md) has worlds scored by trees fitted without them, and [failures](failures.md) shows what is missed. Options, cues and networks are chosen by the sets marked *choices*, above all the [yardstick](worlds.md#the-yardstick). The others are only reported. In brackets: Wilson's 95 % interval. Middlebury's objects are only partly labelled, so precision is undefined there.
-Validation was scored eleven times since the fit to worlds. The present results are in the second table; those before, in colour (found .5, found .75, precision):
+Validation was scored eleven times since the fit to worlds, the last time with the [present network](worlds.md#surroundings), in the second table. Before, in colour (found .5, found .75, precision; –: not scored, or not kept):
 
 | network and trees | validate 320x240 | varied | models | outdoor | real tables |
 |---|---|---|---|---|---|
 | trees fitted to worlds and `dev` alone | .88 .76 .81 | .55 .38 .76 | .69 .50 .79 | .66 .46 .92 | – |
-| the next trees | .86 .74 .83 | .59 .30 .81 | .71 .49 .82 | .66 .52 .89 | – |
+| trees of the next fit | .86 .74 .83 | .59 .30 .81 | .71 .49 .82 | .66 .52 .89 | – |
 | the same with 150 superpixels, for the [comparison](comparison.md#objects-the-usual-chain) | – | – | – | – | – |
 | a wider network and its trees | .86 .76 .84 | .62 .43 .80 | .73 .57 .83 | .70 .56 .88 | .87 .67 .81 |
-| [knows lids](worlds.md#lids) | .84 .74 .88 | .59 .43 .79 | .72 .50 .86 | .64 .56 .94 | .87 .60 .93 |
+| fitted to [lids](worlds.md#lids) | .84 .74 .88 | .59 .43 .79 | .72 .50 .86 | .64 .56 .94 | .87 .60 .93 |
 | [wider again](worlds.md#wider) | .86 .70 .88 | .62 .45 .76 | .73 .55 .82 | .64 .52 .91 | .87 .73 .87 |
 | [mean of two](worlds.md#streets) | .86 .74 .86 | .66 .43 .80 | .74 .54 .86 | .70 .54 .88 | .87 .67 .93 |
 | [orthogonal steps](worlds.md#orthogonal-steps) | .86 .80 .86 | .61 .38 .77 | .73 .56 .84 | .70 .56 .90 | .87 .67 .93 |
 | [houses](worlds.md#houses-and-larger-images) | .90 .82 .87 | .70 .46 .85 | .76 .57 .87 | .68 .58 .90 | .93 .73 .82 |
-| [wide streets](failures.md#attempts-without-success), not taken | .88 .82 .88 | .63 .36 .80 | .77 .54 .89 | .66 .56 .97 | .93 .73 .82 |
-| [surroundings](worlds.md#surroundings): the present ones | | | | | |
+| fitted on to [wide streets](failures.md#attempts-without-success), not taken | .88 .82 .88 | .63 .36 .80 | .77 .54 .89 | .66 .56 .97 | .93 .73 .82 |
 
-Real streets, and streets of other sizes than 320x240, were scored in the last three only.
+Real streets, and streets of other sizes than 320x240, were scored only in the last three of these runs.
 
 {table(header, rows, words=3)}
 """

@@ -99,7 +99,8 @@ def check_twin(cells):
     import torch
 
     whole = torch.from_numpy(cells.transpose(2, 0, 1)[None] / UNIT).float()
-    off = (with_surroundings(whole[:, :OWN]) - whole).abs().max()
+    inside = torch.ones(1, *cells.shape[:2], dtype=torch.bool)
+    off = (with_surroundings(whole[:, :OWN], inside) - whole).abs().max()
     if off > 1 / UNIT:
         raise SystemExit(f"fit_hints.py: channels {OWN} to {CHANNELS - 1} are not those of the library: off by {off:.3f}")
 
@@ -480,7 +481,7 @@ def of_library(net, path, frames):
 
 def towards_start(net, start, share, frames):
     """Weights that are `share` of those of `start`, and the rest of those of `net`, with the statistics of batch normalisation
-    counted anew: a mean has less noise than either."""
+    measured again: a mean has less noise than either."""
     import torch
 
     with torch.no_grad():
@@ -490,7 +491,7 @@ def towards_start(net, start, share, frames):
         for step in net.steps:
             step[1].reset_running_stats()
             step[1].momentum = None  # the mean of all batches
-        sampler = Sampler(frames, 1)  # as they are: without pasted objects
+        sampler = Sampler(frames, 1)  # calm: no close-ups, no pasted objects
         net.train()
         for turn in range(COUNTED):
             net(sampler.batch(1 + turn)[0])
@@ -562,7 +563,7 @@ def orthogonal_steps(filters, rate):
 
 
 def fitted(frames, steps, width, checkpoint, start=None, rate=RATE, keep=0.0):
-    """A network fitted to the frames; its weights are an exponential average over the last steps, and `keep` of the start."""
+    """A network fitted to the frames; its weights are an exponential average over the last steps, and a share `keep` of the start's."""
     import torch
 
     torch.manual_seed(SEED)
@@ -725,9 +726,11 @@ def main():
     command.add_argument("--keep", type=float, default=0.0, help="share of the start's weights in the result")
     command.add_argument("--worlds", type=int, default=10**9, help="frames used of the first store")
     arguments = parser.parse_args()
-    if arguments.command == "fit" and arguments.keep > 0 and not arguments.start:
-        parser.error("--keep: found no --start, of which a share could be kept")
     if arguments.command == "fit":
+        if not 0 <= arguments.keep < 1:
+            parser.error(f"--keep: found {arguments.keep:g}, expected 0 to less than 1")
+        if arguments.keep > 0 and not arguments.start:
+            parser.error("--keep: needs --start, of which a share is kept")
         return fit(arguments)
     gather(arguments.tool, arguments.store, [f for folder in arguments.folders for f in frames_in(folder)])
 

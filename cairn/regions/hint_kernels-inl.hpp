@@ -140,7 +140,7 @@ inline void sum_around(const std::int32_t* columns, int cells, std::int32_t* blo
 inline void compare(const ChannelSums& sums, const double* counts, int cells, std::int16_t* row) {
   // Below these, in 1/64, the spread of a plain surface would be noise.
   constexpr std::array<double, kLooks> kLeastSpread{5, 10, 10};
-  constexpr double kDisparityUnit = 8;  // 1/64 of the nearest disparity
+  constexpr double kDisparityUnit = 8;  // 1/64: an eighth of the nearest disparity
   constexpr double kLimit = 4;
   for (std::size_t k = 0; k < kLooks; ++k) {
     const std::int32_t* const values = sums[kLookSums + k];

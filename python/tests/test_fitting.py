@@ -306,7 +306,7 @@ def test_of_the_start_a_share_is_kept(hints, tmp_path, monkeypatch):
     expected = 0.25 * start.end.weight + 0.75 * net.end.weight
     mean = hints.towards_start(net, start, 0.25, frames)
     assert torch.allclose(mean.end.weight, expected) and not mean.training
-    assert (mean.steps[0][1].running_mean != 0).any()  # counted anew
+    assert (mean.steps[0][1].running_mean != 0).any()  # measured again
 
 
 def test_a_close_view_has_the_input_of_a_narrow_lens(hints, tmp_path):
