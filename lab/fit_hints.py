@@ -134,6 +134,11 @@ class Frames:
         at = number - self.starts[store]
         return torch.from_numpy(self.cells[store][at]), torch.from_numpy(self.truth[store][at])
 
+    def inputs_to_calibrate(self):
+        """The network's input for frames from all over, one by one."""
+        for number in np.linspace(0, 2 * len(self) - 1, CALIBRATION).astype(int):
+            yield with_surroundings(self.take(number)[0][None].float() / UNIT)
+
 
 def with_surroundings(own, inside=None):
     """The channels of cells, and those that compare them with the cells around: hint_input() computes the same. `inside`:
@@ -461,8 +466,8 @@ def of_library(net, path, frames):
         [given[0].mean((0, 2, 3)), (given[0] ** 2).mean((0, 2, 3))]))) for norm in norms]
     net.eval()
     with torch.no_grad():
-        for number in np.linspace(0, 2 * len(frames) - 1, CALIBRATION).astype(int):
-            net(with_surroundings(frames.take(number)[0][None].float() / UNIT))
+        for data in frames.inputs_to_calibrate():
+            net(data)
         for hook in hooks:
             hook.remove()
         for step, old in zip(net.steps, olds):
@@ -480,14 +485,14 @@ def of_library(net, path, frames):
 
 
 def towards_start(net, start, share, frames):
-    """Weights that are `share` of those of `start`, and the rest of those of `net`, with the statistics of batch normalisation
+    """Weights that are `share` of `start`, a state of the network, and the rest those of `net`, with the statistics of batch normalisation
     measured again: a mean has less noise than either."""
     import torch
 
     with torch.no_grad():
-        for new, old in zip(net.state_dict().values(), start.state_dict().values()):
+        for new, old in zip(net.state_dict().values(), start.values()):
             if new.dtype.is_floating_point:
-                new.lerp_(old.to(new.device), share)
+                new.lerp_(old, share)
         for step in net.steps:
             step[1].reset_running_stats()
             step[1].momentum = None  # the mean of all batches
@@ -569,13 +574,13 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE, keep=0.0):
     torch.manual_seed(SEED)
     torch.set_num_threads(2)  # sums depend on it
     device = frames.device
-    net, mean, first_net = (network(width).to(device, memory_format=torch.channels_last) for _ in range(3))
+    net, mean = (network(width).to(device, memory_format=torch.channels_last) for _ in range(2))
     if start and start.suffix == ".bin":
         of_library(net, start, frames)
     elif start:
         net.load_state_dict(torch.load(start, map_location=device))
-    for other in (mean, first_net):
-        other.load_state_dict(net.state_dict())
+    first_state = {name: value.clone() for name, value in net.state_dict().items()}
+    mean.load_state_dict(first_state)
     kept, new = ([v for v in one.state_dict().values() if v.dtype.is_floating_point] for one in (mean, net))
     digest = start and hashlib.sha256(start.read_bytes()).hexdigest()
     # A fit that goes on does not see again what the one before it saw.
@@ -623,7 +628,7 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE, keep=0.0):
             torch.save({name: part.state_dict() for name, part in parts.items()}
                        | {"step": step + 1, "key": key}, unfinished)
             unfinished.replace(checkpoint)
-    return (towards_start(mean, first_net, keep, frames) if keep > 0 else mean).cpu().eval()
+    return (towards_start(mean, first_state, keep, frames) if keep > 0 else mean).cpu().eval()
 
 
 def rounded(net, frames):
@@ -632,8 +637,8 @@ def rounded(net, frames):
 
     seen = [0.0] * len(net.steps)
     with torch.no_grad():
-        for number in np.linspace(0, 2 * len(frames) - 1, CALIBRATION).astype(int):
-            net(with_surroundings(frames.take(number)[0][None].cpu().float() / UNIT), seen)
+        for data in frames.inputs_to_calibrate():
+            net(data.cpu(), seen)
     # Summands need a common scale: the decoder's 1×1 layers use that of the encoder's.
     for small, like in ((13, 9), (14, 6), (16, 3), (18, 1)):
         seen[small] = seen[like] = max(seen[small], seen[like])

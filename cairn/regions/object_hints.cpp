@@ -35,10 +35,10 @@ Activations framed_activations(Size size, int channels, const Pool& pool) {
   return {framed_image(size, channels, pool), size, channels};
 }
 
-Activations convolved(const Activations& in, const kernels::Convolution& by, const Exec& exec) {
+Activations convolved(const Activations& in, const kernels::Convolution& by,
+                      const kernels::ConvolutionKernels& run, const Exec& exec) {
   const Size size{(in.size.width + by.stride - 1) / by.stride, (in.size.height + by.stride - 1) / by.stride};
   Activations out = framed_activations(size, by.outputs, exec.pool);
-  const kernels::ConvolutionKernels& run = kernels::convolution_kernels(exec);
   if (by.transformed_weights != nullptr) {
     parallel_for(exec, (size.height + 1) / 2, kGrain / 2, [&](int first, int last) {
       for (int y = 2 * first; y < 2 * last; y += 2) {
@@ -66,9 +66,9 @@ Activations convolved(const Activations& in, const kernels::Convolution& by, con
 }
 
 /// `small` at twice its resolution, plus `like`.
-Activations doubled_and_added(const Activations& small, const Activations& like, const Exec& exec) {
+Activations doubled_and_added(const Activations& small, const Activations& like,
+                              const kernels::ConvolutionKernels& run, const Exec& exec) {
   Activations out = framed_activations(like.size, like.channels, exec.pool);
-  const kernels::ConvolutionKernels& run = kernels::convolution_kernels(exec);
   parallel_for(exec, like.size.height, kGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y)
       run.add_doubled(small.row(y / 2), like.row(y), like.channels, like.size.width, out.row(y));
@@ -224,8 +224,12 @@ const HintNetwork& hint_network() {
 }
 
 Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& network, const Exec& exec) {
+  const kernels::ConvolutionKernels& run = kernels::convolution_kernels(exec);
   const auto layer = [&](Layer which, const Activations& in) {
-    return convolved(in, network.layer(which), exec);
+    return convolved(in, network.layer(which), run, exec);
+  };
+  const auto joined = [&](Layer which, const Activations& small, const Activations& like) {
+    return doubled_and_added(layer(which, small), like, run, exec);
   };
   const Size cells{input.width() / kHintChannels - 2, input.height() - 2};
   const Activations in{std::move(input), cells, kHintChannels};
@@ -234,10 +238,10 @@ Image<ObjectHint> hint_objects(Image<std::int16_t> input, const HintNetwork& net
   const Activations eighth = layer(kEncode8c, layer(kEncode8b, layer(kEncode8a, quarter)));
   const Activations sixteenth = layer(kEncode16c, layer(kEncode16b, layer(kEncode16a, eighth)));
   Activations up = layer(kEncode32c, layer(kEncode32b, layer(kEncode32a, sixteenth)));
-  up = doubled_and_added(layer(kDecode16, up), sixteenth, exec);
-  up = layer(kDecode8b, doubled_and_added(layer(kDecode8a, up), eighth, exec));
-  up = layer(kDecode4b, doubled_and_added(layer(kDecode4a, up), quarter, exec));
-  up = layer(kDecode2b, doubled_and_added(layer(kDecode2a, up), half, exec));
+  up = joined(kDecode16, up, sixteenth);
+  up = layer(kDecode8b, joined(kDecode8a, up, eighth));
+  up = layer(kDecode4b, joined(kDecode4a, up, quarter));
+  up = layer(kDecode2b, joined(kDecode2a, up, half));
   const Activations output = layer(kOutput, up);
   // Each output pixel holds four neighbouring cells.
   Image<ObjectHint> hints(cells, exec.pool);

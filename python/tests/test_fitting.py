@@ -161,6 +161,21 @@ def store(hints, folder, ids):
     np.save(folder / "truth.npy", truth)
 
 
+def sampling(hints, folder, objects):
+    """A sampler of such frames, a batch of zeros, the ids of the first frame for all of it, and random numbers."""
+    torch = pytest.importorskip("torch")
+    store(hints, folder, objects)
+    sampler = hints.Sampler(hints.Frames([folder], 10, torch.device("cpu")), 4)
+    data = torch.zeros(hints.BATCH, hints.OWN, hints.HEIGHT, hints.WIDTH)
+    ids = torch.from_numpy(np.load(folder / "truth.npy")[:1].astype(np.int64)).repeat(hints.BATCH, 1, 1)
+    random = torch.Generator().manual_seed(1)
+
+    def uniform(low, high, shape=(hints.BATCH, 1, 1)):
+        return low + (high - low) * torch.rand(*shape, generator=random)
+
+    return sampler, data, ids, uniform
+
+
 @pytest.mark.parametrize("more_rows", (30, -24))  # a larger image, a flat one
 def test_a_window_is_gathered(hints, tmp_path, monkeypatch, more_rows):
     torch = pytest.importorskip("torch")
@@ -244,10 +259,7 @@ def test_a_step_turns_filters_along_an_orthogonal_matrix(hints):
 
 
 def test_targets_of_the_network(hints, tmp_path):
-    torch = pytest.importorskip("torch")
-    store(hints, tmp_path, [(3, slice(60, 80)), (9, slice(80, 90))])
-    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
-    ids = torch.from_numpy(np.load(tmp_path / "truth.npy")[:1].astype(np.int64)).repeat(hints.BATCH, 1, 1)
+    sampler, _, ids, _ = sampling(hints, tmp_path, [(3, slice(60, 80)), (9, slice(80, 90))])
     ids[:, 0, 0] = hints.DONT_CARE
     targets = sampler.targets(ids)[0].numpy()
     assert targets[0].sum() == 40 * 30 and targets[6].sum() == hints.HEIGHT * hints.WIDTH - 1
@@ -259,16 +271,11 @@ def test_targets_of_the_network(hints, tmp_path):
 def test_a_pasted_object_hides_what_is_behind_it(hints, tmp_path, monkeypatch):
     torch = pytest.importorskip("torch")
     monkeypatch.setattr(hints, "PASTES", 1)
-    store(hints, tmp_path, [(1, slice(60, 90))])
-    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
-    random = torch.Generator().manual_seed(1)
-    data = torch.zeros(hints.BATCH, hints.OWN, hints.HEIGHT, hints.WIDTH)
+    sampler, data, ids, uniform = sampling(hints, tmp_path, [(1, slice(60, 90))])
     data[:, 3], data[:, 4] = 0.5, 1
     data[:, 0] = torch.arange(hints.BATCH)[:, None, None]  # brightness says whose cells they are
     before = data.clone()
-    ids = torch.from_numpy(np.load(tmp_path / "truth.npy")[:1].astype(np.int64)).repeat(hints.BATCH, 1, 1)
-    sampler.paste(data, ids, 253, lambda low, high, shape=(hints.BATCH, 1, 1):
-                  low + (high - low) * torch.rand(*shape, generator=random))
+    sampler.paste(data, ids, 253, uniform)
     pasted = ids == 253
     assert pasted.any() and (data[:, 3][pasted] > 0.5).all()
     assert (data[:, 0] != before[:, 0])[pasted].all()
@@ -277,18 +284,12 @@ def test_a_pasted_object_hides_what_is_behind_it(hints, tmp_path, monkeypatch):
 
 
 def test_a_mark_lies_flat_on_the_floor(hints, tmp_path, monkeypatch):
-    torch = pytest.importorskip("torch")
     monkeypatch.setattr(hints, "MARKS", 1)
-    store(hints, tmp_path, [(1, slice(60, 90))])
-    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
-    random = torch.Generator().manual_seed(1)
-    data = torch.zeros(hints.BATCH, hints.OWN, hints.HEIGHT, hints.WIDTH)
+    sampler, data, ids, uniform = sampling(hints, tmp_path, [(1, slice(60, 90))])
     data[:, 7, 60:] = 0.5  # the floor
     before = data.clone()
-    ids = torch.from_numpy(np.load(tmp_path / "truth.npy")[:1].astype(np.int64)).repeat(hints.BATCH, 1, 1)
     free = (ids == 0) & (data[:, 7] > 0)
-    sampler.mark(data, ids, lambda low, high, shape=(hints.BATCH, 1, 1):
-                 low + (high - low) * torch.rand(*shape, generator=random))
+    sampler.mark(data, ids, uniform)
     changed = (data != before).any(1)
     assert changed.flatten(1).any(1).sum() > hints.BATCH / 3 and (free | ~changed).all()
     matched = data[:, 4] > 0
@@ -304,16 +305,14 @@ def test_of_the_start_a_share_is_kept(hints, tmp_path, monkeypatch):
     frames = hints.Frames([tmp_path], 10, torch.device("cpu"))
     start, net = hints.network(1 / 3), hints.network(1 / 3)
     expected = 0.25 * start.end.weight + 0.75 * net.end.weight
-    mean = hints.towards_start(net, start, 0.25, frames)
+    mean = hints.towards_start(net, start.state_dict(), 0.25, frames)
     assert torch.allclose(mean.end.weight, expected) and not mean.training
     assert (mean.steps[0][1].running_mean != 0).any()  # measured again
 
 
 def test_a_close_view_has_the_input_of_a_narrow_lens(hints, tmp_path):
     torch = pytest.importorskip("torch")
-    store(hints, tmp_path, [])
-    sampler = hints.Sampler(hints.Frames([tmp_path], 10, torch.device("cpu")), 4)
-    data = torch.zeros(hints.BATCH, hints.OWN, hints.HEIGHT, hints.WIDTH)
+    sampler, data, _, _ = sampling(hints, tmp_path, [])
     inside = torch.ones(hints.BATCH, hints.HEIGHT, hints.WIDTH, dtype=torch.bool)
     inside[:, :, :40] = False
     for channel, value in ((0, 2.0), (3, 0.25), (4, 1.0), (5, 0.5)):
