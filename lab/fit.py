@@ -9,7 +9,7 @@ It needs the network that fit_hints.py writes to the work folder, and worlds tha
 fitted to hints of a network that has would trust them too much. fit.py TOOL WORLDS --ablation FILE: refits without
 each kind of cue in turn, and reports the gain of each. fit.py TOOL WORLDS --distances [--out FOLDER]: fits only the trees
 that correct disparities, to the objects that the library finds. --planes, --floor: fits only the trees that
-choose planes or that recognise the floor, likewise.
+choose planes or that recognise the floor, likewise. --stages fits nothing.
 
 Gradient boosting fits four scores and a correction: whether two neighbouring regions belong to the same object, on the pairs that occur
 while the merge tree grows; whether a region is a whole object, on the regions of such trees; whether a group of pixels lies on a
@@ -461,6 +461,27 @@ def report(rows, jobs):
     return "\n".join(lines)
 
 
+def stages(rows, jobs):
+    """At which stage objects are lost, by their area: no set of superpixels has an IoU of 0.5, no region in the tree, or the best region
+    is not chosen."""
+    lines = ["| frames | input | area, px | objects | superpixels | regions in the tree | found | not found with such a region: median of its scores |",
+             "|---|---|---|---:|---|---|---|---|"]
+    for name, colour in dict.fromkeys((name, colour) for _, colour, name in jobs):
+        # Of each object: IoU as found, area, IoU of superpixels and of a region, score of the region.
+        objects = np.array([[float(iou), *map(float, known.split(":"))] for row, job in zip(rows, jobs) if job[1:] == (colour, name)
+                            for iou, known in zip(row[6][1:].split(","), row[9][1:].split(",")) if iou])
+        bounds = (0, 400, 768, 1536, 4000, math.inf) if colour == "colour" else ()
+        for least, beyond in [*zip(bounds, bounds[1:]), (0, math.inf)]:
+            iou, area, of_superpixels, of_region, score = objects[(least <= objects[:, 1]) & (objects[:, 1] < beyond)].T
+            if len(iou) == 0:
+                continue
+            shares = " | ".join(f"{np.mean(values >= 0.5):.2f} ({np.mean(values >= 0.75):.2f})" for values in (of_superpixels, of_region, iou))
+            lost = score[(iou < 0.5) & (of_region >= 0.5)]
+            size = "all" if (least, beyond) == (0, math.inf) else f"{least} … {beyond}"
+            lines.append(f"| {name} | {colour} | {size} | {len(iou)} | {shares} | {len(lost)}: {np.median(lost) if len(lost) else 0:.2f} |")
+    return "\n".join(lines)
+
+
 def ablation(fitting, checked, path):
     """Refits without one kind of cue at a time and counts the objects found on the yardstick and the real frames."""
     names = {"all frames": lambda name: True, "yardstick": lambda name: "yardstick" in name,
@@ -516,6 +537,7 @@ def main():
     parser.add_argument("--distances", action="store_true", help="fit only the trees that correct disparities")
     parser.add_argument("--planes", action="store_true", help="fit only the trees that choose planes of disparity")
     parser.add_argument("--floor", action="store_true", help="fit only the trees that recognise the floor")
+    parser.add_argument("--stages", action="store_true", help="only print at which stage the library loses the objects of the yardstick")
     parser.add_argument("--distances-page", type=pathlib.Path,
                         help="where their report is written (docs/fitted_distances.md)")
     parser.add_argument("--ablation", type=pathlib.Path, help="where the ablation report is written")
@@ -526,6 +548,9 @@ def main():
     fitting = Fitting(arguments.tool, arguments.work, arguments.hints or arguments.work / "hints", arguments.folds, sets)
     say(f"{len(fitting.jobs)} frames, colour and grey")
     checked = jobs_of(checked_sets(arguments.yardstick, arguments.data))
+    if arguments.stages:
+        fitting.of_library = True
+        return print(stages(fitting.run(lambda i: ("-", "-"), jobs=checked), checked))
     tracked = jobs_of(sequences(arguments.data))
     if arguments.ablation:
         return ablation(fitting, checked, arguments.ablation)

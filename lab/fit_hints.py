@@ -535,10 +535,10 @@ def has_fast_bfloat16(device):
     return processor.exists() and "amx_bf16" in processor.read_text()
 
 
-def orthogonal(matrix):
+def orthogonal(matrix, kind):
     """Nearly U·Vᵀ of the singular value decomposition U·S·Vᵀ: five Newton-Schulz steps (Jordan et al. 2024, "Muon: An
-    optimizer for hidden layers in neural networks")."""
-    out = (matrix / (matrix.norm() + 1e-7)).bfloat16()
+    optimizer for hidden layers in neural networks"), in numbers of this kind."""
+    out = (matrix / (matrix.norm() + 1e-7)).to(kind)
     is_tall = out.shape[0] > out.shape[1]
     out = out.T if is_tall else out
     for _ in range(5):
@@ -547,7 +547,7 @@ def orthogonal(matrix):
     return (out.T if is_tall else out).float()
 
 
-def orthogonal_steps(filters, rate):
+def orthogonal_steps(filters, rate, kind):
     """An optimizer of the filters of convolutions before batch normalisation, whose length means nothing: every step
     turns all of a layer's filters by the same share of their length, in the mean, along the nearest orthogonal matrix
     to the momentum of the gradient (source: see orthogonal())."""
@@ -562,7 +562,7 @@ def orthogonal_steps(filters, rate):
                     momentum.mul_(0.95).add_(weight.grad)
                     ahead = (weight.grad + 0.95 * momentum).flatten(1)
                     weight.mul_(len(weight) ** 0.5 / weight.norm())
-                    weight.sub_(orthogonal(ahead).view(weight.shape), alpha=group["lr"])
+                    weight.sub_(orthogonal(ahead, kind).view(weight.shape), alpha=group["lr"])
 
     return Orthogonal(filters, {"lr": rate})
 
@@ -587,11 +587,11 @@ def fitted(frames, steps, width, checkpoint, start=None, rate=RATE, keep=0.0):
     sampler = Sampler(frames, steps, int(digest[:6], 16) if digest else SEED)
     filters = [step[0].weight for step in net.steps]
     others = [p for p in net.parameters() if all(p is not f for f in filters)]
-    optimizers = [orthogonal_steps(filters, rate),
+    short = has_fast_bfloat16(device)
+    optimizers = [orthogonal_steps(filters, rate, torch.bfloat16 if short else torch.float32),
                   torch.optim.AdamW(others, min(RATE_OF_OTHERS, 0.3 * rate), weight_decay=DECAY)]
     schedules = [torch.optim.lr_scheduler.LambdaLR(
         o, lambda step: min((step + 1) / (WARM_UP * steps), (1 - step / steps) / (1 - WARM_UP))) for o in optimizers]
-    short = has_fast_bfloat16(device)
     key = {"steps": steps, "rate": rate, "frames": len(frames), "bfloat16": short, "start": digest,
            "shapes": [tuple(v.shape) for v in net.state_dict().values()]}
     parts = {"net": net, "mean": mean} | {f"optimizer{i}": o for i, o in enumerate(optimizers)} \

@@ -6,7 +6,8 @@
 // gathers the data for fit_hints.py and fit.py, and measures how well the result performs.
 //
 // Each line of JOBS is the folder of a frame, `colour` or `grey`, and three files: a fitted network and two
-// sets of fitted trees; `-` for the library's. For each line it prints what was found in the frame. The FILEs
+// sets of fitted trees; `-` for the library's. For each line it prints what was found in the frame, and of each true
+// object the area, the greatest IoU of a set of superpixels and of a region, and the score of that region. The FILEs
 // receive records of floats: for each pair of regions that was judged, the job's number, whether they show
 // the same object, how pure they are, and the features; for each region that may be an object, the job's
 // number, its greatest IoU with a true object, whether the truth is partial, and the features; for each object
@@ -91,23 +92,22 @@ void record(std::ofstream& file, int job, float label, float more, const std::ar
 class Truth {
  public:
   Truth(const TrueFrame& frame, const Superpixels& superpixels, const MergeTree& tree)
-      : partial_(frame.partial) {
-    std::map<TruthId, std::size_t> kinds{{TruthId::dont_care, 0}, {TruthId::none, 1}};
+      : partial_(frame.partial), superpixels_(slot(tree.superpixels)) {
     const View<const TruthId> truth = frame.objects;
     for (int y = 0; y < truth.height(); ++y) {
-      for (int x = 0; x < truth.width(); ++x) kinds.try_emplace(truth(x, y), kinds.size());
+      for (int x = 0; x < truth.width(); ++x) kinds_.try_emplace(truth(x, y), kinds_.size());
     }
-    areas_.resize(kinds.size());
-    shares_.assign(tree.nodes.size(), std::vector<std::int64_t>(kinds.size()));
+    areas_.resize(kinds_.size());
+    shares_.assign(tree.nodes.size(), std::vector<std::int64_t>(kinds_.size()));
     for (int y = 0; y < truth.height(); ++y) {
       for (int x = 0; x < truth.width(); ++x) {
-        const std::size_t kind = kinds.at(truth(x, y));
+        const std::size_t kind = kinds_.at(truth(x, y));
         ++areas_[kind];
         ++shares_[index(superpixels.labels(x, y))][kind];
       }
     }
     for (std::size_t i = slot(tree.superpixels); i < tree.nodes.size(); ++i) {
-      for (std::size_t k = 0; k < kinds.size(); ++k)
+      for (std::size_t k = 0; k < kinds_.size(); ++k)
         shares_[i][k] = shares_[slot(tree.nodes[i].part_a)][k] + shares_[slot(tree.nodes[i].part_b)][k];
     }
   }
@@ -129,16 +129,48 @@ class Truth {
   }
   [[nodiscard]] float best_iou(std::size_t node) const {
     float best = 0;
-    for (std::size_t k = 2; k < areas_.size(); ++k) {
-      const auto common = static_cast<float>(shares_[node][k]);
-      best = std::max(best, common / (static_cast<float>(known(node) + areas_[k]) - common));
+    for (std::size_t k = 2; k < areas_.size(); ++k) best = std::max(best, iou(node, k));
+    return best;
+  }
+  /// The node with the greatest IoU with an object, and this IoU.
+  [[nodiscard]] std::pair<std::size_t, float> best_node(TruthId object) const {
+    const std::size_t kind = kinds_.at(object);
+    std::pair<std::size_t, float> best;
+    for (std::size_t i = 0; i < shares_.size(); ++i) {
+      if (iou(i, kind) > best.second) best = {i, iou(i, kind)};
+    }
+    return best;
+  }
+  /// The greatest IoU of any set of superpixels: it has those that show most of the object, by their share.
+  [[nodiscard]] float best_iou_of_superpixels(TruthId object) const {
+    const std::size_t kind = kinds_.at(object);
+    std::vector<std::pair<double, std::size_t>> by_share;
+    for (std::size_t i = 0; i < superpixels_; ++i) {
+      if (shares_[i][kind] > 0)
+        by_share.emplace_back(static_cast<double>(shares_[i][kind]) / static_cast<double>(known(i)), i);
+    }
+    std::sort(by_share.rbegin(), by_share.rend());
+    std::int64_t common = 0;
+    std::int64_t all = areas_[kind];
+    float best = 0;
+    for (const auto& [share, i] : by_share) {
+      common += shares_[i][kind];
+      all += known(i) - shares_[i][kind];
+      best = std::max(best, static_cast<float>(common) / static_cast<float>(all));
     }
     return best;
   }
   [[nodiscard]] bool partial() const { return partial_; }
 
  private:
+  [[nodiscard]] float iou(std::size_t node, std::size_t kind) const {
+    const auto common = static_cast<float>(shares_[node][kind]);
+    return common / (static_cast<float>(known(node) + areas_[kind]) - common);
+  }
+
   bool partial_;
+  std::size_t superpixels_;
+  std::map<TruthId, std::size_t> kinds_{{TruthId::dont_care, 0}, {TruthId::none, 1}};
   std::vector<std::int64_t> areas_;
   std::vector<std::vector<std::int64_t>> shares_;
 };
@@ -396,7 +428,7 @@ void record_floor(std::ofstream& file, int job, Part part, const Models& by) {
 }
 
 void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, const ChosenObjects& chosen,
-                 double milliseconds) {
+                 const Truth& known, const std::vector<float>& node_scores, double milliseconds) {
   int right = 0;
   int ours = 0;
   int phantoms = 0;
@@ -409,9 +441,16 @@ void print_found(int job, const TrueFrame& frame, const ObjectErrors& errors, co
     scores << chosen.scores[slot(number(found.id))] << ':' << (found.iou >= 0.5 ? 1 : 0) << ',';
   }
   std::ostringstream ious;
-  for (const TrueObjectScore& truth : errors.truth) ious << truth.iou << ',';
+  std::ostringstream stages;
+  for (const TrueObjectScore& truth : errors.truth) {
+    ious << truth.iou << ',';
+    const auto [node, iou_of_node] = known.best_node(truth.id);
+    stages << truth.pixel_count << ':' << known.best_iou_of_superpixels(truth.id) << ':' << iou_of_node << ':'
+           << node_scores[node] << ',';
+  }
   std::cout << job << ' ' << frame.name << ' ' << frame.partial << ' ' << ours << ' ' << right << ' '
-            << phantoms << " =" << ious.str() << " =" << scores.str() << ' ' << milliseconds << '\n';
+            << phantoms << " =" << ious.str() << " =" << scores.str() << ' ' << milliseconds << " ="
+            << stages.str() << '\n';
 }
 
 struct Job {
@@ -453,7 +492,9 @@ void work(const Job& of, float min_score, Files& files) {
   const double start = timing::now_ms(CLOCK_THREAD_CPUTIME_ID);
   const MergeTree tree = grow_merge_tree(superpixels, cut.cues(in.left), same_thing, exec, on_judged);
   config.objects.min_confidence = min_score;
-  const ChosenObjects chosen = choose_objects(tree, whole_object, limits_of(config.objects, left.size()));
+  const ChoiceLimits limits = limits_of(config.objects, left.size());
+  const std::vector<float> scores = score_nodes(tree, whole_object, limits);
+  const ChosenObjects chosen = choose_by_scores(tree, scores, limits);
   const double milliseconds = timing::now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
   const Truth truth(frame, superpixels, tree);
   if (files.pairs.is_open()) record_pairs(files.pairs, job, pairs, truth);
@@ -477,7 +518,7 @@ void work(const Job& of, float min_score, Files& files) {
     for (int x = 0; x < left.width(); ++x)
       ours(x, y) = ObjectId{chosen.object_of[index(superpixels.labels(x, y))]};
   }
-  print_found(job, frame, object_errors(ours, frame.objects, {}), chosen, milliseconds);
+  print_found(job, frame, object_errors(ours, frame.objects, {}), chosen, truth, scores, milliseconds);
 }
 
 /// The features, one per line: those of pairs, an empty line, those of regions, an empty line, those of the

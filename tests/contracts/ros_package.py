@@ -30,5 +30,5 @@ assert sources
 for source in sources:
     for package_name in re.findall(r"#include <(\w+)/[\w/]+\.hp*>", source.read_text()):
         assert package_name in depends | {"cairn", "cairn_ros"}, f"{source.name} includes {package_name}"
-version = re.search(r"VERSION (\S+)", (folder.parents[2] / "CMakeLists.txt").read_text().split("project(cairn")[1]).group(1)
+version = re.search(r"VERSION (\S+)", (folder.parent / "CMakeLists.txt").read_text().split("project(cairn")[1]).group(1)
 assert package.version == version, f"package.xml has {package.version}, expected {version}"
