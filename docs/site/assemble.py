@@ -58,9 +58,10 @@ class Assembly:
         page = Path("source") / f"{path}.md"
         if page not in self.made:
             self.made.add(page)
-            code = (self.source / path).read_text()
-            fence = "````"
-            self.write(page, f"# {path}\n\n{fence}{LANGUAGES.get(path.suffix, 'text')}\n{code}{fence}\n")
+            content, fence = (self.source / path).read_bytes(), "````"
+            shown = (f"{len(content)} bytes, not text." if b"\0" in content else
+                     f"{fence}{LANGUAGES.get(path.suffix, 'text')}\n{content.decode()}{fence}")
+            self.write(page, f"# {path}\n\n{shown}\n")
         return page
 
     def folder(self, path):

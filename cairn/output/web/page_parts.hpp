@@ -13,7 +13,7 @@
 /// writers of pages.
 namespace cairn::output {
 
-/// JSON for use inside of <script>, with "</script" and "<!--" escaped. Invalid UTF-8 in names is replaced.
+/// JSON for use inside of a script element of HTML, with "</script" and "<!--" escaped. Invalid UTF-8 in names is replaced.
 std::string for_script(const nlohmann::ordered_json& json);
 /// The same for a text of JSON.
 std::string script_text(const std::string& json);
