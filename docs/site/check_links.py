@@ -42,7 +42,7 @@ def main(site):
                 target = target / "index.html"
             known = pages.get(target)
             fragment = unquote(parts.fragment)
-            if not target.exists() or (fragment and known and fragment not in known.ids | WRITTEN_BY_NONE):
+            if not target.exists() or (fragment and known and fragment not in known.ids and fragment not in WRITTEN_BY_NONE):
                 print(f"{path.relative_to(site)}: {link}: not found")
                 bad += 1
     print(f"{len(pages)} pages, {count} links, {bad} of them broken")
