@@ -246,13 +246,14 @@ def test_a_fit_goes_on_from_the_networks_integers(hints, tmp_path, width):
 def test_a_step_turns_filters_along_an_orthogonal_matrix(hints):
     torch = pytest.importorskip("torch")
     torch.manual_seed(1)
-    for shape in ((8, 40), (40, 8)):
-        values = torch.linalg.svdvals(hints.orthogonal(torch.randn(shape)))
-        assert values.min() > 0.5 and values.max() < 1.4
+    for kind in (torch.bfloat16, torch.float32):
+        for shape in ((8, 40), (40, 8)):
+            values = torch.linalg.svdvals(hints.orthogonal(torch.randn(shape), kind))
+            assert values.min() > 0.5 and values.max() < 1.4
     weight = torch.nn.Parameter(3 * torch.randn(16, 4, 3, 3))
     weight.grad = torch.randn_like(weight)
     before, gradient = weight.detach().clone(), weight.grad.clone()
-    hints.orthogonal_steps([weight], 0.01).step()
+    hints.orthogonal_steps([weight], 0.01, torch.float32).step()
     step = weight.detach() - before * 4 / before.norm()  # 16 filters, of length 1 in the mean
     assert 0.03 < step.norm() < 0.05  # of a length of 4
     assert (step * gradient).sum() < 0
