@@ -180,8 +180,11 @@ void find_corners(Keyframe& frame, View<const Gray> left, const DisparityMap& di
                   View<const float> confidence, View<const std::uint8_t> moving, const StereoRig& rig,
                   const OdometryConfig& config) {
   std::vector<cv::Point2f> found;
+  // In a large image the strongest corners would be close together, and constrain the motion less.
+  const double grid_px = std::sqrt(double(left.width()) * double(left.height()) / config.max_features);
+  const double distance_px = std::max(double(config.min_distance), double(config.min_spacing) * grid_px);
   cv::goodFeaturesToTrack(borrowed(left), found, config.max_features, double(config.quality_level),
-                          double(config.min_distance), allowed(disparity, confidence, moving, config));
+                          distance_px, allowed(disparity, confidence, moving, config));
   const double fb = double(rig.focal_px) * double(rig.baseline_m);
   for (const cv::Point2f& at : found) {
     const double d = disparity_at(disparity.disparity_px, static_cast<int>(at.x), static_cast<int>(at.y)) +

@@ -27,6 +27,7 @@ struct OdometryConfig {
   // Constants, not options.
   float quality_level = 0.01F;        // smallest strength of a corner, relative to the strongest
   float min_distance = 8.0F;          // px between corners
+  float min_spacing = 0.5F;           // between corners, of the spacing of max_features on a grid
   float min_confidence = 0.5F;        // of the disparity of a corner
   int win_size = 11;                  // px; side of the window for tracking a corner
   int max_level = 3;                  // pyramid levels above the image

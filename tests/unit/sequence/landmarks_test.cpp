@@ -269,24 +269,24 @@ TEST(Landmarks, RecognisedBesideTheirEmptyPlaceHaveMoved) {
     const auto after = with_thing_beside(before, thing);
     if (!after) continue;
     ++rooms;
-    // An uncertain place of the thing allows to recognise it beside that.
+    // With an uncertain place, half a metre is within the gate of recognition, 16.3, but beyond 9: apart.
     for (Landmark& landmark : run.state.map.list) {
-      if (landmark.id == id) landmark.covariance_m2 = {0.026, 0, 0, 0, 0.026, 0, 0, 0, 0.01};
+      if (landmark.id == id) landmark.covariance_m2 = {0.018, 0, 0, 0, 0.018, 0, 0, 0, 0.01};
     }
     run.lap(*after);
     const auto changes = changes_of(run.events);
     ASSERT_LE(changes.size(), 1U) << "room " << seed;
-    if (changes.empty()) continue;  // not every lap shows five frames of the empty place
+    if (changes.empty()) continue;
     ++reported;
     EXPECT_EQ(changes[0].kind, LandmarkEventKind::moved);
     EXPECT_EQ(changes[0].landmark, id);
     EXPECT_NEAR(std::hypot(changes[0].moved_by_m.x, changes[0].moved_by_m.y), 0.6, 0.2);
     const Cylinder& now = after->things[static_cast<std::size_t>(thing) - 1];
     const Point3 known = find(run.state.map, id)->position_m;
-    EXPECT_LT(std::hypot(known.x - now.x, known.y - now.y), 0.15) << "its old place does not count any more";
+    EXPECT_LT(std::hypot(known.x - now.x, known.y - now.y), 0.2) << "its old place does not count any more";
   }
-  EXPECT_GE(rooms, 3);
-  EXPECT_GE(reported, 2) << "of " << rooms;
+  EXPECT_GE(rooms, 5);
+  EXPECT_EQ(reported, rooms);
 }
 
 TEST(Landmarks, WithAWrongPlaceHaveNotMovedWhileNothingShowsIt) {
