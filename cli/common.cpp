@@ -101,8 +101,7 @@ void add_exec_options(CLI::App& app, ExecOptions& options) {
 void add_device_option(CLI::App& app, ExecOptions& options) {
   options.takes_device = true;
   app.add_option("--device", options.device,
-                 "graphics processor for matching: off, auto, or the number or name of one that `cairn info` "
-                 "lists; results do not change; default: $CAIRN_DEVICE, else off")
+                 "graphics processor for matching, see `cairn info`; default: $CAIRN_DEVICE, else off")
       ->type_name("NAME");
 }
 
@@ -148,12 +147,9 @@ void add_map_options(CLI::App& app, io::MapOptions& maps) {
 }
 
 void add_binning_option(CLI::App& app, int& binning, const std::string& prefix) {
-  app.add_option(
-         "--binning", binning,
-         prefix +
-             "N x N pixels in one, for images from 640x480 on: a third of the time with 2; masks, boxes and "
-             "disparities (ndisp is scaled, --set is not) are of the smaller images; 1 to " +
-             std::to_string(kMaxBinning))
+  app.add_option("--binning", binning,
+                 prefix + "N x N pixels in one: faster, but finds fewer small objects; 1 to " +
+                     std::to_string(kMaxBinning))
       ->type_name("N")
       ->capture_default_str();
 }

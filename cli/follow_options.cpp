@@ -47,20 +47,19 @@ std::pair<std::string, Pose> named_pose(const std::string& text) {
   return {text.substr(0, equals), *pose};
 }
 
+void add_motion_options(CLI::App& app, std::string& odometry, std::string& imu) {
+  app.add_option("--odometry", odometry, "wheel odometry: table of speeds, poses of TUM or KITTI, or a topic")
+      ->type_name("FILE|ros2:TOPIC");
+  app.add_option("--imu", imu, "gyroscope rates in the form of EuRoC, or a topic (sensor_msgs/Imu)")
+      ->type_name("FILE|ros2:TOPIC");
+}
+
 void add_sensor_options(CLI::App& app, SensorInput& input) {
-  app.add_option(
-         "--odometry", input.odometry,
-         "wheel odometry: table of t_s, v_m_per_s, omega_rad_per_s, or poses of TUM or KITTI; or a topic "
-         "(nav_msgs/Odometry), of the recording if SOURCE is one")
-      ->type_name("FILE|ros2:TOPIC");
-  app.add_option("--imu", input.imu, "gyroscope rates in the form of EuRoC, or a topic (sensor_msgs/Imu)")
-      ->type_name("FILE|ros2:TOPIC");
+  add_motion_options(app, input.odometry, input.imu);
   app.add_option("--poses", input.poses, "known camera poses (TUM), used instead of motion estimation")
       ->type_name("FILE");
-  app.add_option(
-         "--scan", input.scan,
-         "laser scans to check disparities: table of stamp, angle_min, angle_increment, r0, ..., or a "
-         "topic (sensor_msgs/LaserScan)")
+  app.add_option("--scan", input.scan,
+                 "laser scans to check disparities: a table, or a topic (sensor_msgs/LaserScan)")
       ->type_name("FILE|ros2:TOPIC");
   app.add_option("--map", input.map, "map of landmarks to use and extend; created if absent")
       ->type_name("FILE.db");

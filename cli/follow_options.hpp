@@ -39,6 +39,8 @@ struct SensorInput {
   /// The given ones that need metres: option names.
   [[nodiscard]] std::vector<std::string> given() const;
 };
+/// --odometry and --imu.
+void add_motion_options(CLI::App& app, std::string& odometry, std::string& imu);
 void add_sensor_options(CLI::App& app, SensorInput& input);
 /// Throws Error for options that exclude each other, or do not suit the source.
 live::SensorFiles sensor_files(const SensorInput& input, const input::Sequence& source);

@@ -203,13 +203,7 @@ int estimate(const OdometryOptions& options) {
 Work declare_odometry(CLI::App& app) {
   auto options = std::make_shared<OdometryOptions>();
   add_source_options(app, options->input);
-  app.add_option(
-         "--odometry", options->wheels,
-         "wheel odometry: t_s,v_m_per_s,omega_rad_per_s, or poses; or a topic, of the recording or live")
-      ->type_name("FILE|ros2:TOPIC");
-  app.add_option("--imu", options->imu,
-                 "gyroscope rates in the form of EuRoC's data.csv, or a topic, of the recording or live")
-      ->type_name("FILE|ros2:TOPIC");
+  add_motion_options(app, options->wheels, options->imu);
   app.add_option("--form", options->form, "form of the poses: tum, kitti or euroc")
       ->type_name("NAME")
       ->capture_default_str();

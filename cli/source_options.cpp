@@ -55,11 +55,8 @@ void add_source_options(CLI::App& app, SourceInput& input) {
   app.add_option("--layout", input.options.layout,
                  "layout of a video, a camera or images with both images: side_by_side or top_bottom")
       ->type_name("NAME");
-  app.add_option(
-         "--topics", input.options.topics,
-         "topics of a recording (default: found by type and name) or of ros2: (default: "
-         "left/image_rect,right/image_rect): left and right, an image and its depth or disparities, or all "
-         "three: then follow and live compare the depth with the right image")
+  app.add_option("--topics", input.options.topics,
+                 "topics: left and right image, an image and its depth or disparities, or all three")
       ->type_name("A,B[,C]");
   add_map_options(app, input.options.maps);
   app.add_option("--rate", input.options.rate_hz,

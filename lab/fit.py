@@ -508,7 +508,7 @@ def ablation(fitting, checked, path):
 <!-- Written by ./dev fit --ablation; do not edit. -->
 
 This page shows how much each kind of cue contributes: objects found (IoU ≥ 0.5) on the [yardstick](worlds.md#the-yardstick) and on real frames, in colour and in grey, after fitting both sets of trees again without the features of one kind.
-The trees were fitted to {len(fitting.jobs) // 2} frames, in {fitting.folds} folds; the [hints](stages/object_hints.md) come from the network of an earlier `./dev fit`. A difference of fewer than about 15 of the yardstick's objects, or of three of the real frames', is within chance.
+The trees were fitted to {len(fitting.jobs) // 2} frames, in {fitting.folds} folds; the [hints](stages/object_hints.md) come from the network of the library. A difference of fewer than about 15 of the yardstick's objects, or of three of the real frames', is within chance.
 
 """ + "\n".join(lines) + "\n\n" + "\n".join(
         f"- **{cue}**: features whose names contain " + ", ".join(f"“{word}”" for word in words) + "."
@@ -531,7 +531,7 @@ def main():
     parser.add_argument("--yardstick", type=pathlib.Path, help="frames that are only reported")
     parser.add_argument("--folds", type=int, default=2)
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/fit"))
-    parser.add_argument("--hints", type=pathlib.Path, help="the fitted network, if not that of the work folder")
+    parser.add_argument("--hints", type=pathlib.Path, help="the fitted network, if not that of the work folder; -: the library's")
     parser.add_argument("--out", type=pathlib.Path, help="where the sources are written (cairn)")
     parser.add_argument("--page", type=pathlib.Path, help="where the report is written (docs/fitting.md)")
     parser.add_argument("--distances", action="store_true", help="fit only the trees that correct disparities")

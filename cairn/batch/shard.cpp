@@ -9,6 +9,7 @@
 #include <cairn/batch/shard.hpp>
 #include <cairn/core/error.hpp>
 #include <cairn/io/atomic_file.hpp>
+#include <cairn/io/names_and_numbers.hpp>
 #include <cairn/io/sha256.hpp>
 #include <cerrno>
 #include <charconv>
@@ -49,11 +50,6 @@ std::optional<std::size_t> count_of_variable(const char* name) {
 
 std::string name_of(Shard shard) {
   return "part-" + std::to_string(shard.number) + "-of-" + std::to_string(shard.of);
-}
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
 /// A file for appending, with explicit synchronisation to disk.
@@ -324,7 +320,8 @@ WorkResult work_on(const Run& run, Shard shard, const MakeRow& make_row, const O
   std::vector<PlannedFrame> frames;
   each_planned(run, span.begin, span.end,
                [&](std::size_t, PlannedFrame frame) { frames.push_back(std::move(frame)); });
-  WorkerNote note{host_name(), ::getpid(), now_s(), now_s()};
+  const std::string host = io::host_name();
+  WorkerNote note{host.empty() ? "unknown" : host, ::getpid(), now_s(), now_s()};
   // Without locks every worker has its own files: two may do the same work, and nothing is resumed.
   const std::string mine = lock.is_held() ? "" : "." + note.host + "-" + std::to_string(note.pid);
   Checkpoint rows(run, run.work() / (name_of(shard) + ".rows" + mine), frames);

@@ -27,9 +27,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
   name = name.substr(0, 100);  // longer names are not similar to any
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(3, name.size() / 2) + 1;
+  std::size_t best_distance = (name.size() + 2) / 3 + 1;
+  constexpr std::size_t kTelling = 4;  // characters
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(name, candidate);
+    const bool is_part =
+        name.size() >= kTelling && (candidate.starts_with(name) || candidate.ends_with(name));
+    const std::size_t distance = is_part ? 1 : edit_distance(name, candidate);
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;

@@ -8,7 +8,8 @@
 
 namespace cairn {
 
-/// The candidate of least edit distance, for "did you mean …?"; empty if no candidate is close.
+/// The candidate of least edit distance, where one that begins or ends with four or more characters of the name counts as
+/// 1, for "did you mean …?"; empty if more than a third of the name would have to change.
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates);
 
 }  // namespace cairn

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <cairn/input/frame_list.hpp>
+#include <cairn/io/frame_names.hpp>
 #include <cairn/sequence/stamps.hpp>
 
 namespace cairn::input {
@@ -115,6 +116,37 @@ void FrameWatch::see(SequenceFrame& frame, const std::string& file, std::vector<
     }
   }
   before_ = std::move(now);
+}
+
+std::optional<SequenceFrame> LiveSequence::next() {
+  std::optional<SequenceFrame> frame = SourceSequence::next();
+  note_losses(frame ? frame->name : io::number_text(count_));
+  if (is_stopped_) return std::nullopt;
+  return frame;
+}
+
+std::optional<std::size_t> LiveSequence::size() const {
+  const FrameRange& range = options_.frames;
+  if (!range.last_excluded) return std::nullopt;
+  return range.count_of(*range.last_excluded);
+}
+
+void LiveSequence::note(const char* what, std::uint64_t count, const std::string& before) {
+  if (count == 0) return;
+  const auto known =
+      std::ranges::find_if(remarks_, [&](const SourceRemark& other) { return other.what == what; });
+  if (known == remarks_.end()) {
+    remarks_.push_back({what, count, "before " + before, true, false});
+  } else {
+    known->count = count;
+  }
+}
+
+std::optional<std::size_t> LiveSequence::index_of(Stamp stamp) {
+  if (!watch_.continues(stamp, io::number_text(count_), remarks_)) return std::nullopt;
+  const std::size_t index = count_++;
+  if (!options_.frames.contains(index)) return std::nullopt;
+  return index;
 }
 
 }  // namespace cairn::input

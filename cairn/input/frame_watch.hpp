@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -98,6 +100,32 @@ class SourceSequence : public Sequence {
   SourceCalibration calibration_;
   std::vector<SourceRemark> remarks_;
   std::string ended_early_;
+};
+
+/// Base of live sources: counts frames from 0, and what was lost.
+class LiveSequence : public SourceSequence {
+ public:
+  std::optional<SequenceFrame> next() override;
+  [[nodiscard]] std::optional<std::size_t> size() const override;
+  /// Only sets a flag, so it may be called in a signal handler: whoever waits looks at it every kNotice.
+  void stop() override { is_stopped_ = true; }
+
+ protected:
+  static constexpr std::chrono::milliseconds kNotice{50};
+
+  LiveSequence(const SourceOptions& options, Pool pool)
+      : SourceSequence(options.max_gap_s), options_(options), pool_(std::move(pool)) {}
+  /// Counts in remarks what was lost before the frame of this name.
+  virtual void note_losses(const std::string& before) = 0;
+  /// Adds or updates a remark with a count; none for 0.
+  void note(const char* what, std::uint64_t count, const std::string& before);
+  /// The index of the next frame; nullopt if it is outside the range, or not later than the previous one.
+  std::optional<std::size_t> index_of(Stamp stamp);
+
+  SourceOptions options_;
+  Pool pool_;
+  std::size_t count_ = 0;
+  std::atomic<bool> is_stopped_ = false;
 };
 
 }  // namespace cairn::input

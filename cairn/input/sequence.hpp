@@ -49,7 +49,7 @@ struct SourceStatus {
   std::uint64_t unpaired = 0;  // left or right images without the other within source.max_skew
   std::uint64_t reconnects = 0;
   std::string trouble;  // why it is not connected, in one line
-  std::string clock;    // clock of the stamps: "system", "monotonic", "source"
+  std::string clock;    // clock of the stamps: "system" (since 1970) or "source"; empty for files
 };
 
 /// The frames first, first + step, … below last_excluded.

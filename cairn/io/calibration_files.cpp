@@ -183,7 +183,7 @@ KnownGround mounting(const Statement& says) {
     known.points.push_back({static_cast<float>(p[i]), static_cast<float>(p[i + 1]),
                             static_cast<float>(p[i + 2]), static_cast<float>(p[i + 3])});
   }
-  check_ground(known);
+  validate(known);
   return known;
 }
 
@@ -537,21 +537,6 @@ std::string calibration_text(const StereoRig& rig, Size image, std::optional<int
   if (ground.camera_pitch_deg != 0) add("camera_pitch", ground.camera_pitch_deg);
   if (ground.camera_roll_deg != 0) add("camera_roll", ground.camera_roll_deg);
   return file;
-}
-
-void check_ground(const KnownGround& known) {
-  const auto check = [](double value, const char* key, double lowest, double highest) {
-    if (value >= lowest && value <= highest) return;
-    throw Error(std::string(key) + " is " + written(value) + ", expected " + written(lowest) + " ... " +
-                written(highest));
-  };
-  constexpr double kMinHeight = 0.01;
-  constexpr double kMaxHeight = 100;
-  constexpr double kMaxTilt = 89;
-  if (known.camera_height_m) check(double{*known.camera_height_m}, "camera_height", kMinHeight, kMaxHeight);
-  check(double{known.camera_pitch_deg}, "camera_pitch", -kMaxTilt, kMaxTilt);
-  check(double{known.camera_roll_deg}, "camera_roll", -kMaxTilt, kMaxTilt);
-  if (!known.points.empty()) (void)ground_from_points(known.points);
 }
 
 std::optional<StereoRig> rig_of_depth(const Calibration& calibration) {

@@ -81,8 +81,6 @@ Calibration binned(const Calibration& calibration, Size image, int factor);
 /// was and not `scales`.
 Calibration suited(const Calibration& calibration, Size image, const std::filesystem::path& path,
                    bool scales = false);
-/// Throws Error if the height or an angle of the camera is out of range, or the points determine no plane.
-void check_ground(const KnownGround& known);
 /// Throws Error if its number of disparities is out of range for match.num_disparities.
 void check_search_range(const Calibration& calibration, const std::filesystem::path& path);
 

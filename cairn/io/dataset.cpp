@@ -6,6 +6,7 @@
 #include <cairn/io/calibration_forms.hpp>
 #include <cairn/io/dataset.hpp>
 #include <cairn/io/frame_names.hpp>
+#include <cairn/io/names_and_numbers.hpp>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -63,11 +64,6 @@ bool is_file(const fs::path& path) {
 std::optional<fs::path> file(const fs::path& path) {
   if (is_file(path)) return path;
   return std::nullopt;
-}
-
-bool is_folder(const fs::path& path) {
-  std::error_code unknown;
-  return fs::is_directory(path, unknown);
 }
 
 std::optional<fs::path> picture(const fs::path& folder, const std::string& stem) {

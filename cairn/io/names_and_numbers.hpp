@@ -10,7 +10,7 @@
 #include <string_view>
 #include <system_error>
 
-/// File names and numbers in them; internal to source.
+/// Names of files and computers, and numbers in them; internal to source.
 namespace cairn::io {
 
 /// The number that is the whole text; nullopt if it is empty, has other characters, or is too large.
@@ -21,6 +21,9 @@ std::optional<Number> whole(std::string_view text) {
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return number;
 }
+
+/// The name of this computer in its network; empty if it is not known.
+std::string host_name();
 
 /// Whether `path` is an accessible folder.
 bool is_folder(const std::filesystem::path& path);

@@ -39,11 +39,6 @@ input::SensorTopics recorded(const input::SensorTopicNames& names, const std::st
 Sensors::Sensors(const SensorFiles& files, const std::string& source_name, const input::Sequence& source) {
   const input::SensorTopicNames topics = topics_among(files);
   const bool is_live = source.status().is_live;
-  if (topics.any() && is_live && source.status().clock == "monotonic") {
-    throw Error(source.name() +
-                ": its stamps count from the start of the computer, those of ROS topics from 1970: expected "
-                "images from ros2:, too");
-  }
   if (topics.any() && is_live) {
     live_ = input::open_sensor_topics(topics, source.frame_id());
     const std::string& topic = topics.odometry.empty() ? topics.imu : topics.odometry;

@@ -220,8 +220,15 @@ Message reject(const LiveFrame& frame, const MessageForm& form) {
 template <ObstacleLabel space>
 Message cloud(const LiveFrame& frame, const MessageForm& form) {
   const io::LoadedImage& image = frame.pair->left;
-  return ros::encode(ros::cloud_of(header_of(frame, form), frame.step.frame, space, form.rig, image.gray,
-                                   image.rgb, form.cloud_stride));
+  const Frame& found = frame.step.frame;
+  ros::PointCloud2 points =
+      ros::cloud_of(header_of(frame, form), found, space, form.rig, image.gray, image.rgb, form.cloud_stride);
+  if (space == ObstacleLabel::obstacle) {
+    if (const auto floor = floor_frame(found.ground, form.rig))
+      ros::add_steps(points, find_steps(found, *floor, *form.rig, frame.config->segmentation.obstacles),
+                     *floor);
+  }
+  return ros::encode(points);
 }
 
 Message grid(const LiveFrame& frame, const MessageForm& form) {

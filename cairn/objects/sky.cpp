@@ -15,7 +15,8 @@ namespace {
 constexpr float kSky = 0.6F;      // probability
 constexpr float kTrusted = 0.7F;  // confidence
 constexpr float kNear_px = 2.0F;  // above the disparity of infinity
-constexpr int kContrast = 24;     // grey levels
+constexpr float kMostNear = 0.75F;
+constexpr int kContrast = 24;  // grey levels
 
 struct Sums {
   std::int64_t pixels = 0, brightness = 0, above = 0, near = 0;
@@ -25,6 +26,8 @@ struct Sums {
 }  // namespace
 
 float sky_probability(const SkyFeatures& of) {
+  // However bright it is in a dark image: a white lorry at dusk.
+  if (of.near > kMostNear) return 0;
   // Fitted by lab/outdoors.py.
   return likelihood(-8.72F + 12.17F * of.brightness - 14.06F * of.image_brightness +
                     5.97F * of.above_horizon - 7.19F * of.near + (of.touches_the_top ? 2.92F : 0.0F));

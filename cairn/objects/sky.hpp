@@ -31,7 +31,8 @@ struct SkyFeatures {
   bool touches_the_top = false;  // it has a pixel in the first row
 };
 
-/// The probability that a superpixel is sky: a logistic function of its features, fitted by lab/outdoors.py.
+/// The probability that a superpixel is sky: a logistic function of its features, fitted by lab/outdoors.py; 0 if `near`
+/// exceeds 0.75.
 float sky_probability(const SkyFeatures& of);
 
 /// Rejects the disparities of superpixels that are sky with a probability above 0.6, with Reject::sky; holes there get

@@ -69,6 +69,7 @@ namespace {
 
 void check(const FrameInput& in, const Run& run) {
   const Size size = in.left.gray.size();
+  if (run.rig) run.rig->validate();
   if (!in.right.empty()) {
     validate(run.config, size, run.rig.has_value());
   } else if (in.disparity.disparity_px.size() == size) {

@@ -348,10 +348,29 @@ Detection3DArray landmarks_of(const Header& header, const std::vector<Landmark>&
   return message;
 }
 
+namespace {
+
+constexpr std::uint32_t kPointStep = 24;
+
+void add_point(PointCloud2& cloud, const Vec3& at_m, Rgb colour, ObjectId object, float confidence) {
+  const std::size_t at = cloud.data.size();
+  cloud.data.resize(at + kPointStep);
+  std::uint8_t* const to = cloud.data.data() + at;
+  store(to, at_m.x);
+  store(to + 4, at_m.y);
+  store(to + 8, at_m.z);
+  store(to + 12, std::uint32_t{colour.r} << 16U | std::uint32_t{colour.g} << 8U | colour.b);
+  store(to + 16, static_cast<std::uint32_t>(number(object)));
+  store(to + 20, confidence);
+  cloud.row_step = static_cast<std::uint32_t>(cloud.data.size());
+  cloud.width = cloud.row_step / kPointStep;
+}
+
+}  // namespace
+
 PointCloud2 cloud_of(const Header& header, const Frame& frame, ObstacleLabel space,
                      const std::optional<StereoRig>& rig, View<const Gray> left, View<const Rgb> left_rgb,
                      int stride) {
-  constexpr std::uint32_t kStep = 24;
   PointCloud2 message;
   message.header = header;
   std::uint32_t offset = 0;
@@ -361,7 +380,7 @@ PointCloud2 cloud_of(const Header& header, const Frame& frame, ObstacleLabel spa
     offset += 4;
   }
   message.height = 1;
-  message.point_step = kStep;
+  message.point_step = kPointStep;
   message.is_dense = true;
   const Size size = rig ? frame.space.size() : Size{};
   const cairn::Image<float> disparities_px = obstacle_disparities(frame);
@@ -373,20 +392,26 @@ PointCloud2 cloud_of(const Header& header, const Frame& frame, ObstacleLabel spa
       if (!point) continue;
       const Gray grey = left(x, y);
       const Rgb colour = left_rgb.empty() ? Rgb{grey, grey, grey} : left_rgb(x, y);
-      const std::size_t at = message.data.size();
-      message.data.resize(at + kStep);
-      std::uint8_t* const to = message.data.data() + at;
-      store(to, point->x);
-      store(to + 4, point->y);
-      store(to + 8, point->z);
-      store(to + 12, std::uint32_t{colour.r} << 16U | std::uint32_t{colour.g} << 8U | colour.b);
-      store(to + 16, static_cast<std::uint32_t>(number(frame.objects.labels(x, y))));
-      store(to + 20, frame.confidence.empty() ? 1.0F : frame.confidence(x, y));
+      add_point(message, *point, colour, frame.objects.labels(x, y),
+                frame.confidence.empty() ? 1.0F : frame.confidence(x, y));
     }
   }
-  message.row_step = static_cast<std::uint32_t>(message.data.size());
-  message.width = message.row_step / kStep;
   return message;
+}
+
+void add_steps(PointCloud2& cloud, const std::vector<GroundStep>& steps, const FloorFrame& floor) {
+  constexpr float kApart_m = 0.02F;
+  constexpr Rgb kRed{255, 0, 0};
+  for (const GroundStep& step : steps) {
+    const Vec3 way{step.to_m.x - step.from_m.x, step.to_m.y - step.from_m.y, step.to_m.z - step.from_m.z};
+    const int pieces = static_cast<int>(std::ceil(std::hypot(way.x, way.y) / kApart_m));
+    for (int piece = 0; piece <= pieces; ++piece) {
+      const float share = static_cast<float>(piece) / static_cast<float>(std::max(pieces, 1));
+      const Vec3 edge{step.from_m.x + share * way.x, step.from_m.y + share * way.y,
+                      step.from_m.z + share * way.z + std::max(step.height_m, 0.0F)};
+      add_point(cloud, floor.to_camera(edge), kRed, ObjectId::none, 1);
+    }
+  }
 }
 
 std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,

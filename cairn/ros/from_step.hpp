@@ -84,6 +84,9 @@ Detection3DArray landmarks_of(const Header& header, const std::vector<Landmark>&
 PointCloud2 cloud_of(const Header& header, const Frame& frame, ObstacleLabel space,
                      const std::optional<StereoRig>& rig, View<const Gray> left, View<const Rgb> left_rgb,
                      int stride = 1);
+/// Adds points at most 2 cm apart along the upper edges of steps, as obstacles without an object: both levels of a kerb are
+/// floor, which clears a costmap. `cloud`: of cloud_of().
+void add_steps(PointCloud2& cloud, const std::vector<GroundStep>& steps, const FloorFrame& floor);
 
 /// The obstacle grid (map_obstacles()); nullopt if no floor is known. `header`: in the floor's frame.
 std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,

@@ -9,7 +9,7 @@
 namespace cairn {
 
 struct BackgroundConfig {
-  int max_walls = 3;  // 0 … 8; 0 outdoors, without walls
+  int max_walls = 3;  // 0 … 8
   // Constants, not options:
   float tolerance = 2.3F;  // ‰ of the width; largest distance of a disparity from a wall that it supports
   float min_share = 1.5F;  // % of the textured disparities; smallest support of a wall
@@ -18,7 +18,7 @@ struct BackgroundConfig {
 };
 template <class V>
 void fields(BackgroundConfig& c, V&& v) {
-  v("max_walls", c.max_walls, "", "largest number of walls to fit; 0 outdoors", range(0, 8),
+  v("max_walls", c.max_walls, "", "largest number of walls to fit", range(0, 8),
     when("pipeline.method", "region_tree"));
 }
 

@@ -9,6 +9,7 @@
 #include <cairn/scene/ground_plane.hpp>
 #include <cairn/scene/plane_through_pairs.hpp>
 #include <cairn/stereo/speckle.hpp>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -82,13 +83,30 @@ Ground ground_from_points(const std::vector<PointPair>& points) {
   return {found->plane, 1.0F, static_cast<float>(residual), Refusal::none};
 }
 
+void validate(const KnownGround& known) {
+  const auto check = [](double value, const char* key, double lowest, double highest) {
+    if (value >= lowest && value <= highest) return;
+    const auto text = [](double number) {
+      std::array<char, 32> written{};
+      return std::string(written.data(),
+                         std::to_chars(written.data(), written.data() + written.size(), number).ptr);
+    };
+    throw Error(std::string(key) + " is " + text(value) + ", expected " + text(lowest) + " ... " +
+                text(highest));
+  };
+  constexpr double kMinHeight = 0.01;
+  constexpr double kMaxHeight = 100;
+  constexpr double kMaxTilt = 89;
+  if (known.camera_height_m) check(double{*known.camera_height_m}, "camera_height", kMinHeight, kMaxHeight);
+  check(double{known.camera_pitch_deg}, "camera_pitch", -kMaxTilt, kMaxTilt);
+  check(double{known.camera_roll_deg}, "camera_roll", -kMaxTilt, kMaxTilt);
+  if (!known.points.empty()) (void)ground_from_points(known.points);
+}
+
 void validate(const GroundConfig& config, bool has_rig) {
-  if (config.source == GroundSource::points) {
-    if (config.known.points.empty()) {
-      throw Error("option ground.source: a ground from points needs ground_points in the calibration");
-    }
-    (void)ground_from_points(config.known.points);
-  }
+  if (config.source == GroundSource::points || config.source == GroundSource::pose) validate(config.known);
+  if (config.source == GroundSource::points && config.known.points.empty())
+    throw Error("option ground.source: a ground from points needs ground_points in the calibration");
   if (config.source == GroundSource::pose && !(has_rig && config.known.camera_height_m)) {
     throw Error(
         "option ground.source: a ground from the camera pose needs a calibration with "

@@ -78,6 +78,8 @@ Ground fit_ground(View<const float> disparity_px, const std::optional<StereoRig>
 /// validate(Config), so fit_ground cannot fail.
 Ground ground_from_points(const std::vector<PointPair>& points);
 
+/// Throws Error unless the height is 0.01 … 100 m, the angles are −89 … 89°, and the points, if any, determine a plane.
+void validate(const KnownGround& known);
 /// Throws Error if `source` is points or pose and `known` lacks the data or has invalid data.
 void validate(const GroundConfig& config, bool has_rig);
 

@@ -41,6 +41,11 @@ void validate(const FollowConfig& config) {
   option_walk::check_ranges(config);
   const TrackingConfig& t = config.tracking;
   const LandmarksConfig& l = config.landmarks;
+  const OdometryConfig& o = config.odometry;
+  if (o.max_features < o.min_inliers) {
+    throw Error("option odometry.max_features: " + option_walk::write(o.max_features) +
+                " is less than odometry.min_inliers, " + option_walk::write(o.min_inliers));
+  }
   if (l.min_frames < t.min_hits) {
     throw Error("option landmarks.min_frames: " + option_walk::write(l.min_frames) +
                 " is less than tracking.min_hits, " + option_walk::write(t.min_hits));

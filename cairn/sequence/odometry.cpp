@@ -325,15 +325,23 @@ PriorTerm expected_from(const MotionPrior& prior, const Pose& before_from_key,
   return out;
 }
 
-bool is_usable(const MotionPrior& prior) {
-  for (const double value : prior.now_from_before.rotation)
-    if (!std::isfinite(value)) return false;
-  const Point3 t = prior.now_from_before.translation_m;
-  const Matrix6 p = matrix(prior.covariance);
-  if (!std::isfinite(dot(t, t)) || !p.allFinite()) return false;
-  if (prior.kind == PriorKind::gyroscope)
-    return Eigen::LLT<Eigen::Matrix3d>(p.bottomRightCorner<3, 3>()).info() == Eigen::Success;
-  return Eigen::LLT<Matrix6>(p).info() == Eigen::Success;
+/// The prior, of a gyroscope its rotation alone; nullopt unless it has finite numbers and a covariance.
+std::optional<MotionPrior> usable(std::optional<MotionPrior> prior) {
+  if (!prior) return std::nullopt;
+  Matrix6 p = matrix(prior->covariance);
+  if (prior->kind == PriorKind::gyroscope) {
+    const Eigen::Matrix3d of_turn = p.bottomRightCorner<3, 3>();
+    p.setIdentity();
+    p.bottomRightCorner<3, 3>() = of_turn;
+    prior->covariance = rows_of(p);
+    prior->now_from_before.translation_m = {};
+  }
+  for (const double value : prior->now_from_before.rotation)
+    if (!std::isfinite(value)) return std::nullopt;
+  const Point3 t = prior->now_from_before.translation_m;
+  if (!std::isfinite(dot(t, t)) || !p.allFinite() || Eigen::LLT<Matrix6>(p).info() != Eigen::Success)
+    return std::nullopt;
+  return prior;
 }
 
 /// Whether measured motion and prior differ by more than their covariances allow.
@@ -625,7 +633,7 @@ OdometryStep advance_odometry(const OdometryState& before, const OdometryFrame& 
                               const std::optional<MotionPrior>& given, const OdometryConfig& config) {
   const auto& [left, disparity, confidence, moving] = frame;
   const PresentFrame present{left, disparity, confidence, moving, rig, config};
-  const std::optional<MotionPrior> prior = given && is_usable(*given) ? given : std::nullopt;
+  const std::optional<MotionPrior> prior = usable(given);
   OdometryStep step{before, {}};
   OdometryState& state = step.state;
   Motion& motion = step.motion;

@@ -78,7 +78,7 @@ PyCalibration make_calibration(const std::optional<StereoRig>& rig, std::optiona
                                std::optional<float> camera_height_m, float camera_pitch_deg,
                                float camera_roll_deg) {
   KnownGround ground{std::move(ground_points), camera_height_m, camera_pitch_deg, camera_roll_deg};
-  io::check_ground(ground);
+  validate(ground);
   return {{rig, image_size, num_disparities, std::move(ground)}, "Calibration()"};
 }
 

@@ -85,7 +85,10 @@ TEST(Segmenter, RefusesABadConfigurationAtConstruction) {
 }
 
 TEST(Segmenter, RefusesABadCalibrationAtConstruction) {
-  EXPECT_THROW(Segmenter(Config(), StereoRig{.focal_px = 0, .baseline_m = 0.1F}), Error);
+  const StereoRig flat{.focal_px = 0, .baseline_m = 0.1F};
+  EXPECT_THROW(Segmenter(Config(), flat), Error);
+  const Image<Gray> grey(Size{64, 48}, Gray{0}, {});
+  EXPECT_THROW((void)segment(StereoPair::from(grey, grey), flat, Config(), {}), Error);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cairn/core/error.hpp>
 #include <cairn/io/frame_names.hpp>
 #include <condition_variable>
@@ -20,11 +19,15 @@
 namespace cairn::input {
 namespace {
 
-using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// Polling interval for stop(), which may run in a signal handler and so cannot notify next().
-constexpr auto kNotice = 50ms;
+/// From the steady clock, by which cameras stamp, to the time since 1970, by which ROS does.
+std::int64_t ns_of_steady_zero() {
+  const auto ns = [](auto now) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(now.time_since_epoch()).count();
+  };
+  return ns(std::chrono::system_clock::now()) - ns(Clock::now());
+}
 
 template <class... Values>
 std::string formatted(const char* form, Values... values) {
@@ -33,15 +36,11 @@ std::string formatted(const char* form, Values... values) {
   return words.data();
 }
 
-class CameraSequence : public SourceSequence {
+class CameraSequence : public LiveSequence {
  public:
   CameraSequence(CameraNames names, std::vector<CameraMaker> makers, const SourceOptions& options, Pool pool,
                  CameraTimes times)
-      : SourceSequence(options.max_gap_s),
-        names_(std::move(names)),
-        options_(options),
-        pool_(std::move(pool)),
-        pairer_(options.max_skew_ms) {
+      : LiveSequence(options, std::move(pool)), names_(std::move(names)), pairer_(options.max_skew_ms) {
     calibration_ = open_calibration(options, std::nullopt, false, false);
     const bool has_two = makers.size() > 1;
     for (std::size_t side = 0; side < makers.size(); ++side) {
@@ -61,30 +60,18 @@ class CameraSequence : public SourceSequence {
     cameras_.clear();  // before the members that their threads use
   }
 
-  std::optional<SequenceFrame> next() override {
-    std::optional<SequenceFrame> frame = SourceSequence::next();
-    note_losses(frame ? frame->name : io::number_text(count_));
-    if (is_stopped_) return std::nullopt;
-    return frame;
-  }
-
-  [[nodiscard]] std::optional<std::size_t> size() const override {
-    const FrameRange& range = options_.frames;
-    if (!range.last_excluded) return std::nullopt;
-    return range.count_of(*range.last_excluded);
-  }
   [[nodiscard]] std::string name() const override { return names_.name; }
   [[nodiscard]] std::string stamps_from() const override { return names_.stamps_from; }
 
   void stop() override {
-    is_stopped_ = true;
+    LiveSequence::stop();
     for (const auto& camera : cameras_) camera->stop();
   }
 
   [[nodiscard]] SourceStatus status() const override {
     SourceStatus status;
     status.is_live = true;
-    status.clock = "monotonic";
+    status.clock = "system";
     for (const auto& camera : cameras_) {
       const KeptCamera::State state = camera->state();
       status.is_connected = status.is_connected && state.is_connected;
@@ -224,28 +211,28 @@ class CameraSequence : public SourceSequence {
     }
   }
 
-  /// nullopt if it is outside the range, or not later than the previous one.
+  /// nullopt without an index, see index_of().
   std::optional<SequenceFrame> frame_of(CameraImage&& image) {
     if (image.right.size() != image.left.gray.size()) {
       throw Error(names_.source + ": the right camera gives " + text(image.right.size()) + ", expected " +
                   text(image.left.gray.size()) + " as the left one");
     }
     is_after_gap_ = is_after_gap_ || image.is_after_gap;
-    if (!watch_.continues(image.stamp, io::number_text(count_), remarks_)) return std::nullopt;
-    const std::size_t index = count_++;
-    if (!options_.frames.contains(index)) return std::nullopt;
+    const Stamp stamp{image.stamp.ns + steady_zero_ns_};
+    const std::optional<std::size_t> index = index_of(stamp);
+    if (!index) return std::nullopt;
     io::LoadedPair pair =
         calibration_.rectified({std::move(image.left), {std::move(image.right), {}}, 8}, pool_);
-    SequenceFrame frame{io::number_text(index),     index, image.stamp,  std::move(pair.left),
-                        std::move(pair.right.gray), false, image.arrived};
+    SequenceFrame frame{io::number_text(*index),    *index, stamp,        std::move(pair.left),
+                        std::move(pair.right.gray), false,  image.arrived};
     watch_.see(frame, names_.source, remarks_);
     frame.after_gap = frame.after_gap || std::exchange(is_after_gap_, false);
     return frame;
   }
 
-  void note_losses(const std::string& before) {
+  void note_losses(const std::string& before) override {
     const SourceStatus now = status();
-    note(kDropped, now.dropped, "before " + before);
+    note("frame dropped unread, or lost by the camera", now.dropped, before);
     std::array<std::uint64_t, 2> unpaired{};
     StampPairer::Skew skew;
     std::uint64_t pairs = 0;
@@ -255,23 +242,11 @@ class CameraSequence : public SourceSequence {
       skew = pairer_.skew();
       pairs = pairer_.pairs();
     }
-    note("left image without a right one", unpaired[0], "before " + before);
-    note("right image without a left one", unpaired[1], "before " + before);
+    note("left image without a right one", unpaired[0], before);
+    note("right image without a left one", unpaired[1], before);
     if (now.reconnects > 0) note_once("was lost and came back", text_of_times(now.reconnects));
     if (pairs > 0) note_once("the two cameras are not synchronised", text_of(skew));
     if (has_ended_) note_once("the pipeline ended", "after " + std::to_string(count_) + " frames");
-  }
-
-  /// Adds or updates a remark with a count.
-  void note(const char* what, std::uint64_t count, const std::string& first) {
-    if (count == 0) return;
-    const auto known = std::find_if(remarks_.begin(), remarks_.end(),
-                                    [&](const SourceRemark& other) { return other.what == what; });
-    if (known == remarks_.end()) {
-      remarks_.push_back({what, count, first, true, false});
-    } else {
-      known->count = count;
-    }
   }
 
   /// Adds or updates a remark with changing text.
@@ -298,16 +273,13 @@ class CameraSequence : public SourceSequence {
     return words + "; moving objects get wrong disparities (a common trigger helps)";
   }
 
-  static constexpr const char* kDropped = "frame dropped unread, or lost by the camera";
   static constexpr double kMinDriftSeconds = 10;
 
   CameraNames names_;
-  SourceOptions options_;
-  Pool pool_;
-  std::size_t count_ = 0;
+  // Read once: the stamps do not jump when the system's clock is set.
+  std::int64_t steady_zero_ns_ = ns_of_steady_zero();
   bool is_after_gap_ = false;
   bool has_ended_ = false;
-  std::atomic<bool> is_stopped_ = false;
 
   mutable std::mutex mutex_;  // guards the next four
   std::condition_variable changed_;

@@ -120,7 +120,7 @@ std::unique_ptr<Sequence> open_pipelines(const std::string& source, const Source
     makers.emplace_back([request] { return open_gst(request); });
   }
   const std::string name = is_rtsp(text) ? "rtsp" : "gst";
-  return camera_sequence({shown, name, "the pipeline (CLOCK_MONOTONIC)"}, std::move(makers), options, pool);
+  return camera_sequence({shown, name, "the pipeline"}, std::move(makers), options, pool);
 }
 
 }  // namespace
@@ -176,8 +176,7 @@ std::unique_ptr<Sequence> open_v4l2_sequence(const std::string& source, const So
     name += (name.empty() ? "" : ",") + std::filesystem::path(request.device).filename().string();
     makers.emplace_back([request, &ops, pool] { return open_v4l2(request, ops, pool); });
   }
-  return camera_sequence({source, name, "the kernel (CLOCK_MONOTONIC)"}, std::move(makers), options, pool,
-                         times);
+  return camera_sequence({source, name, "the kernel"}, std::move(makers), options, pool, times);
 }
 
 std::unique_ptr<Sequence> open_camera(const std::string& source, const SourceOptions& options,

@@ -32,8 +32,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kPrefix = "ros2:";
-/// Polling interval for stop(), which may run in a signal handler.
-constexpr auto kNotice = 50ms;
 /// How long the first pair waits for the cameras' camera_info.
 constexpr auto kInfoWait = 2s;
 /// How long a frame with depth waits for the right image that checks it.
@@ -47,14 +45,12 @@ std::string seconds_of(double seconds) {
   return words.data();
 }
 
-class Ros2Sequence : public SourceSequence {
+class Ros2Sequence : public LiveSequence {
  public:
   Ros2Sequence(std::string source, const SourceOptions& options, Pool pool)
-      : SourceSequence(options.max_gap_s),
+      : LiveSequence(options, std::move(pool)),
         source_(std::move(source)),
         prefix_(prefix_of(source_)),
-        options_(options),
-        pool_(std::move(pool)),
         topics_(topics_of(options)),
         left_(participant_, topics_[0]),
         right_(second_reader(participant_, topics_[1], options.topics)),
@@ -68,23 +64,8 @@ class Ros2Sequence : public SourceSequence {
     first_ = opened();
   }
 
-  std::optional<SequenceFrame> next() override {
-    std::optional<SequenceFrame> frame = SourceSequence::next();
-    note_losses(frame ? frame->name : io::number_text(count_));
-    if (is_stopped_) return std::nullopt;
-    return frame;
-  }
-
-  [[nodiscard]] std::optional<std::size_t> size() const override {
-    const FrameRange& range = options_.frames;
-    if (!range.last_excluded) return std::nullopt;
-    return range.count_of(*range.last_excluded);
-  }
   [[nodiscard]] std::string name() const override { return prefix_.empty() ? "/" : prefix_; }
   [[nodiscard]] std::string stamps_from() const override { return "header.stamp of " + topics_[0]; }
-
-  /// next() polls every 50 ms, so this calls no DDS function and is safe in a signal handler.
-  void stop() override { is_stopped_ = true; }
 
   [[nodiscard]] SourceStatus status() const override {
     SourceStatus status;
@@ -353,16 +334,15 @@ class Ros2Sequence : public SourceSequence {
     }
   }
 
-  /// nullopt if it is outside the range, or not later than the previous one.
+  /// nullopt without an index, see index_of().
   std::optional<SequenceFrame> frame_of(const Pair& pair) {
     const ros::Header& header = pair.left.value.image().header;
     const Stamp stamp = ros::stamp_of(header.stamp);
-    if (!watch_.continues(stamp, io::number_text(count_), remarks_)) return std::nullopt;
-    const std::size_t index = count_++;
-    if (!options_.frames.contains(index)) return std::nullopt;
+    const std::optional<std::size_t> index = index_of(stamp);
+    if (!index) return std::nullopt;
     const bool is_depth = has_depth(pair);
     const ros::Image& left = pair.left.value.image();
-    const std::optional<io::Raster> checking = right_at(stamp, io::number_text(index));
+    const std::optional<io::Raster> checking = right_at(stamp, io::number_text(*index));
     const bool has_right = !is_depth || checking;
     io::LoadedPair images = checking
                                 ? pictures_of(left, topics_[0], *checking, topics_[2], bits_, pool_)
@@ -371,8 +351,8 @@ class Ros2Sequence : public SourceSequence {
     bits_ = images.bits;
     images = calibration_.rectified(std::move(images), pool_);
     SequenceFrame frame{
-        io::number_text(index),
-        index,
+        io::number_text(*index),
+        *index,
         stamp,
         std::move(images.left),
         has_right ? std::move(images.right.gray) : Image<Gray>(),
@@ -392,26 +372,13 @@ class Ros2Sequence : public SourceSequence {
     return frame;
   }
 
-  void note_losses(const std::string& before) {
+  void note_losses(const std::string& before) override {
     note("image without its other half within --max-skew", unpaired_, before);
     note("image that was sent but not received", lost(), before);
-  }
-  /// Adds or updates a remark with a count.
-  void note(const char* what, std::uint64_t count, const std::string& before) {
-    if (count == 0) return;
-    const auto known = std::find_if(remarks_.begin(), remarks_.end(),
-                                    [&](const SourceRemark& other) { return other.what == what; });
-    if (known == remarks_.end()) {
-      remarks_.push_back({what, count, "before " + before, true, false});
-    } else {
-      known->count = count;
-    }
   }
 
   std::string source_;
   std::string prefix_;
-  SourceOptions options_;
-  Pool pool_;
   std::vector<std::string> topics_;
   ros::Participant participant_;
   ros::Reader<ros::Image> left_;
@@ -424,9 +391,7 @@ class Ros2Sequence : public SourceSequence {
   Pairing pairing_;
   std::array<std::optional<ros::CameraInfo>, 2> last_infos_;
   std::array<bool, 2> has_come_{};
-  std::size_t count_ = 0;
   int bits_ = 8;
-  std::atomic<bool> is_stopped_ = false;
   std::atomic<std::uint64_t> unpaired_ = 0;
   std::atomic<Clock::time_point> last_pair_ = Clock::now();
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/fleet/rows.hpp>
+#include <cairn/io/names_and_numbers.hpp>
 #include <chrono>
 #include <random>
 
@@ -12,11 +13,6 @@
 
 namespace cairn::live {
 namespace {
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
 
 fleet::MapId random_id() {
   std::random_device device;
@@ -38,7 +34,7 @@ AgentVoice::AgentVoice(const ros::Participant& participant, const std::string& r
   row.agent = random_id();
   row.role = role;
   row.name = name;
-  row.host = host_name();
+  row.host = io::host_name();
   row.process = ::getpid();
   row.map_id = map_id;
 }

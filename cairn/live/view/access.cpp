@@ -4,11 +4,11 @@
 
 #include <arpa/inet.h>
 #include <sys/random.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/io/names_and_numbers.hpp>
 #include <cerrno>
 #include <charconv>
 #include <optional>
@@ -192,11 +192,8 @@ Access::Access(const ViewOptions& options)
   if (is_loopback_) {
     hosts_.insert(hosts_.end(), {"127.0.0.1", "::1", *address_of(options.address)});
   } else {
-    std::array<char, 256> name{};
-    if (gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0') {
-      hosts_.push_back(lower(name.data()));
-      hosts_.push_back(lower(name.data()) + ".local");
-    }
+    const std::string name = lower(io::host_name());
+    if (!name.empty()) hosts_.insert(hosts_.end(), {name, name + ".local"});
   }
 }
 

@@ -18,10 +18,10 @@
 
 #include <cairn/live/view/view_server.hpp>
 
-#include <unistd.h>
 #include <algorithm>
 #include <atomic>
 #include <cairn/core/error.hpp>
+#include <cairn/io/names_and_numbers.hpp>
 #include <cairn/output/web/live_page.hpp>
 #include <condition_variable>
 #include <deque>
@@ -170,8 +170,8 @@ class ViewServer::Hub {
   [[nodiscard]] std::string url() const {
     std::string host = options_.address;
     if (host == "0.0.0.0" || host == "::") {
-      std::array<char, 256> name{};
-      host = gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "localhost";
+      host = io::host_name();
+      if (host.empty()) host = "localhost";
     }
     if (host.find(':') != std::string::npos) host = "[" + host + "]";
     return (access_.is_tls() ? "https://" : "http://") + host + ":" + std::to_string(port_) +

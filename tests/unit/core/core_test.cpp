@@ -264,6 +264,9 @@ TEST(Nearest, FindsTheIntendedName) {
   EXPECT_EQ(nearest("match.windowsize", names), "match.window_size");
   EXPECT_EQ(nearest("spekle.size", names), "speckle.size");
   EXPECT_EQ(nearest("zzzzzzzz", names), "");
+  EXPECT_EQ(nearest("match.win", names), "match.window_size");
+  EXPECT_EQ(nearest("window_size", names), "match.window_size");
+  EXPECT_EQ(nearest("nope", {"live", "help"}), "");
 }
 
 }  // namespace

@@ -131,6 +131,13 @@ TEST(Sky, ASuperpixelFullOfTrustedNearDisparitiesIsNone) {
   for (int y = 0; y < 10; ++y)
     for (int x = 0; x < 10; ++x) meadow.see(x, y, 9, 0.9F);
   EXPECT_EQ(meadow.sky_pixels(), kAboveTheHorizon - 100);
+  EXPECT_EQ(sky_probability({.brightness = 1,
+                             .image_brightness = 0.1F,
+                             .above_horizon = 1,
+                             .near = 0.8F,
+                             .touches_the_top = true}),
+            0)
+      << "a white lorry at dusk";
 }
 
 TEST(Sky, PixelsOfObjectsStay) {

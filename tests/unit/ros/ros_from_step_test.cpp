@@ -180,6 +180,26 @@ TEST(RosFromStep, CloudsContainThePixelsOfTheirClass) {
   EXPECT_EQ(cloud_of(kHeader, s.step.frame, ObstacleLabel::floor, std::nullopt, images.gray, {}).width, 0U);
 }
 
+TEST(RosFromStep, CloudsOfObstaclesMarkStepsOfTheGround) {
+  const Sample& s = sample();
+  const auto floor = floor_frame(s.step.frame.ground, s.calibration.rig);
+  ASSERT_TRUE(floor);
+  for (const float height_m : {0.12F, -0.2F}) {
+    PointCloud2 cloud = cloud_of(kHeader, {}, ObstacleLabel::obstacle, {}, {}, {});
+    add_steps(cloud, {{{2, -0.5F, 0.01F}, {2.3F, 0.5F, 0.01F}, height_m}}, *floor);
+    ASSERT_GE(cloud.width, 53U) << "1.04 m, points 2 cm apart";
+    ASSERT_EQ(cloud.data.size(), std::size_t{cloud.width} * cloud.point_step);
+    EXPECT_EQ(cloud.row_step, cloud.data.size());
+    for (std::size_t k = 0; k < cloud.width; ++k) {
+      const auto number = [&](std::size_t i) { return float_at(cloud.data, k * cloud.point_step + 4 * i); };
+      const Vec3 at = floor->to_floor({number(0), number(1), number(2)});
+      EXPECT_NEAR(at.z, height_m > 0 ? 0.13 : 0.01, 1e-3);
+      EXPECT_NEAR(at.x, 2.15 + 0.3 * at.y, 1e-3);
+      EXPECT_LE(std::abs(at.y), 0.501);
+    }
+  }
+}
+
 TEST(RosFromStep, TheFloorIsBelowTheCamera) {
   const Sample& s = sample();
   const TFMessage message = transforms_of({}, s.step, s.calibration.rig);

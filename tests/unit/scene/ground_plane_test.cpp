@@ -387,6 +387,10 @@ TEST(GroundFromPose, NeedsAHeight) {
   GroundConfig config = pose(1, 0, 0);
   config.known.camera_height_m.reset();
   EXPECT_THROW(validate(config, true), Error);
+  EXPECT_THROW(validate(pose(0, 0, 0), true), Error);
+  EXPECT_THROW(validate(pose(-1, 0, 0), true), Error);
+  EXPECT_THROW(validate(pose(1, 90, 0), true), Error);
+  EXPECT_THROW(validate(pose(1, 0, std::numeric_limits<float>::quiet_NaN()), true), Error);
   const StereoRig rig{250, 160, 120, 0.2F, 0};
   EXPECT_FALSE(fit_ground(DisparityMap{}, rig, config, {}).plane);
 }

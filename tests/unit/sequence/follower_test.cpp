@@ -239,6 +239,10 @@ TEST(Follower, RefusesAnImpossibleRig) {
   FollowConfig config;
   config.tracking.low_confidence = 0.9F;
   EXPECT_THROW(Follower{config}, Error);
+  config = {};
+  config.odometry.max_features = 30;
+  config.odometry.min_inliers = 31;
+  EXPECT_THROW(Follower{config}, Error) << "no frame would have a motion";
 }
 
 TEST(Follower, FollowsACameraWithoutObjects) {

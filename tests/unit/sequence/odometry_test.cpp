@@ -112,6 +112,20 @@ TEST(Odometry, IgnoresMovingObjects) {
   EXPECT_GT(outliers, 10) << "the panel's corners were followed, and went elsewhere";
 }
 
+TEST(Odometry, SpreadsItsCornersInALargeImage) {
+  // Texture in a patch alone, where 300 corners 8 px apart would have room.
+  constexpr Size kLarge{640, 480};
+  Seen seen{Image<Gray>(kLarge, Gray{90}, {}),
+            {Image<float>(kLarge, 20.0F, {}), Image<Reject>(kLarge, Reject::none, {})}};
+  for (int y = 180; y < 300; ++y) {
+    for (int x = 240; x < 400; ++x) seen.left(x, y) = static_cast<Gray>(255 * room::hashed(x / 3, y / 3));
+  }
+  const OdometryState state = step(begin_odometry({}), seen).state;
+  const int corners = step(state, seen).motion.followed;
+  EXPECT_GE(corners, 40);
+  EXPECT_LE(corners, 100) << "16 px apart: one for each 256 px of 160x120, more at the border";
+}
+
 TEST(Odometry, UsesNoCornersOfMovingObjects) {
   const Seen first = look({});
   Image<std::uint8_t> moving(room::kSize);
@@ -453,10 +467,14 @@ TEST(Odometry, AGyroscopeProvidesRotationOnly) {
   const Pose truth = at(0.02, 0.05, 8);
   MotionPrior turned = wheels(inverse(at(7, 7, 8)), 0, 0.05);  // its translation must not matter
   turned.kind = PriorKind::gyroscope;
-  turned.now_from_before.translation_m = {};
   const OdometryStep moved = step(state, look(truth), turned);
   EXPECT_EQ(moved.motion.refusal, MotionRefusal::none);
   EXPECT_LT(metres_apart(moved.state.map_from_camera, truth), 0.01);
+
+  MotionPrior alone = turned;
+  alone.now_from_before.translation_m.x = alone.covariance[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(metres_apart(step(state, look(truth), alone).state.map_from_camera, moved.state.map_from_camera),
+            0);
 
   MotionPrior wrong = turned;
   wrong.now_from_before.rotation = inverse(at(0, 0, 2)).rotation;
