@@ -15,7 +15,7 @@ namespace {
 constexpr float kSky = 0.6F;      // probability
 constexpr float kTrusted = 0.7F;  // confidence
 constexpr float kNear_px = 2.0F;  // above the disparity of infinity
-constexpr float kMostNear = 0.75F;
+constexpr float kMostNear = 0.9F;
 constexpr int kContrast = 24;  // grey levels
 
 struct Sums {

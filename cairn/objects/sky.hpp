@@ -32,7 +32,7 @@ struct SkyFeatures {
 };
 
 /// The probability that a superpixel is sky: a logistic function of its features, fitted by lab/outdoors.py; 0 if `near`
-/// exceeds 0.75.
+/// exceeds 0.9.
 float sky_probability(const SkyFeatures& of);
 
 /// Rejects the disparities of superpixels that are sky with a probability above 0.6, with Reject::sky; holes there get

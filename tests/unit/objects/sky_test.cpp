@@ -134,7 +134,7 @@ TEST(Sky, ASuperpixelFullOfTrustedNearDisparitiesIsNone) {
   EXPECT_EQ(sky_probability({.brightness = 1,
                              .image_brightness = 0.1F,
                              .above_horizon = 1,
-                             .near = 0.8F,
+                             .near = 0.95F,
                              .touches_the_top = true}),
             0)
       << "a white lorry at dusk";
