@@ -19,7 +19,7 @@ endfunction()
 # All other headers are private: they may change or disappear in any version.
 set(private_headers
   core/disjoint_sets core/each_index core/highway_targets stereo/label_kernels_plain core/nearest core/stage_clock
-  core/pair_copy core/pool_memory core/random core/robust_fit core/scratch core/statistics
+  core/number_text core/pair_copy core/pool_memory core/random core/robust_fit core/scratch core/statistics
   image/gaussian image/local_contrast image/prefilter image/sparse_points image/texture
   stereo/byte_lanes_plain stereo/islands stereo/lanes_plain stereo/memory
   scene/floor_search scene/plane_fit scene/plane_through_pairs

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/core/number_text.hpp>
 #include <cairn/io/dataset.hpp>
 #include <cairn/io/frame_names.hpp>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -461,9 +461,7 @@ double rate_of(const SourceOptions& options) {
 }
 
 std::string rate_text(double rate_hz) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), rate_hz).ptr;
-  return "a rate of " + std::string(text.data(), end) + " Hz";
+  return "a rate of " + shortest_text(rate_hz) + " Hz";
 }
 
 Stamp stamp_at(std::size_t index, double rate_hz) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
+#include <cairn/core/number_text.hpp>
 #include <cairn/image/binning.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/calibration_files.hpp>
@@ -33,7 +34,7 @@ constexpr double kSameFocal = 1e-2;
 void check_same_focal(double a, const char* name_a, double b, const char* name_b,
                       double tolerance = kRounding) {
   if (std::abs(a - b) <= tolerance * std::abs(a)) return;
-  throw Error(std::string(name_a) + " is " + written(a) + ", " + name_b + " is " + written(b) +
+  throw Error(std::string(name_a) + " is " + shortest_text(a) + ", " + name_b + " is " + shortest_text(b) +
               "; a rectified pair has one focal length");
 }
 
@@ -150,7 +151,7 @@ Statement read_statement(std::string_view text, const fs::path& path, bool grey_
 /// An integer in 1 … most.
 int counted(double value, const char* key, int most) {
   if (!(value >= 1 && value <= most) || value != std::floor(value)) {
-    throw Error(std::string(key) + " is " + written(value) + ", expected a whole number in 1 ... " +
+    throw Error(std::string(key) + " is " + shortest_text(value) + ", expected a whole number in 1 ... " +
                 std::to_string(most));
   }
   return static_cast<int>(value);
@@ -158,8 +159,8 @@ int counted(double value, const char* key, int most) {
 
 void check_positive(const std::optional<double>& value, const char* name) {
   if (value && !(*value > 0)) {
-    throw ImpossibleCalibration(std::string(name) + " is " + written(*value) + ", expected a positive number",
-                                *value);
+    throw ImpossibleCalibration(
+        std::string(name) + " is " + shortest_text(*value) + ", expected a positive number", *value);
   }
 }
 
@@ -201,7 +202,7 @@ std::vector<std::string> remarks_on(const Statement& says) {
   if (says.fx && says.fy && std::abs(*says.fx - *says.fy) > kRounding * *says.fx) {
     std::array<char, 32> percent{};
     std::snprintf(percent.data(), percent.size(), "%.2f %%", 100 * std::abs(*says.fy / *says.fx - 1));
-    remarks.push_back("fx is " + written(*says.fx) + ", fy is " + written(*says.fy) +
+    remarks.push_back("fx is " + shortest_text(*says.fx) + ", fy is " + shortest_text(*says.fy) +
                       ": heights are off by " + percent.data() + ", distances and widths are not");
   }
   return remarks;
@@ -262,11 +263,6 @@ fs::path file_in(const fs::path& folder) {
 }
 
 }  // namespace
-
-std::string written(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\n\v\f";
@@ -510,12 +506,8 @@ void save_calibration(const fs::path& path, const StereoRig& rig, Size image,
 std::string calibration_text(const StereoRig& rig, Size image, std::optional<int> num_disparities,
                              const KnownGround& ground) {
   std::string file;
-  const auto digits_of = [](float value) {
-    std::array<char, 32> digits{};
-    return std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
-  };
   const auto add = [&](const char* key, float value) {
-    file += std::string(key) + "=" + digits_of(value) + "\n";
+    file += std::string(key) + "=" + shortest_text(value) + "\n";
   };
   add("fx", rig.focal_px);
   add("fy", rig.focal_px);
@@ -528,8 +520,8 @@ std::string calibration_text(const StereoRig& rig, Size image, std::optional<int
   if (!ground.points.empty()) {
     file += std::string(kGroundPointsKey) + "=";
     for (const PointPair& point : ground.points) {
-      file += digits_of(point.x_left) + "," + digits_of(point.y_left) + "," + digits_of(point.x_right) + "," +
-              digits_of(point.y_right) + ";";
+      file += shortest_text(point.x_left) + "," + shortest_text(point.y_left) + "," +
+              shortest_text(point.x_right) + "," + shortest_text(point.y_right) + ";";
     }
     file.back() = '\n';
   }

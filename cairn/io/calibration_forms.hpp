@@ -36,8 +36,6 @@ inline constexpr std::array kMountingKeys{MountingKey{"camera_height", &Statemen
                                           MountingKey{"camera_pitch", &Statement::camera_pitch},
                                           MountingKey{"camera_roll", &Statement::camera_roll}};
 
-/// The shortest text that reads back as `value`.
-std::string written(double value);
 /// `text` as one finite number; `key` is for the message of the Error.
 double finite_number(std::string_view text, std::string_view key);
 /// Numbers separated by white space, commas or semicolons.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
+#include <cairn/core/number_text.hpp>
 #include <cairn/io/calibration_forms.hpp>
 #include <cairn/io/read_file.hpp>
 #include <cctype>
@@ -316,9 +317,9 @@ struct RosPair {
 void check_order(const std::optional<Projection>& left, const std::optional<Projection>& right) {
   if (!left || !right) throw Error("the other camera has no projection_matrix");
   if ((*left)[3] >= (*right)[3]) return;
-  throw Error("the names are exchanged: the projection_matrix of the left camera has " + written((*left)[3]) +
-              " as its fourth number, that of the right one " + written((*right)[3]) +
-              ", expected -fx * baseline for the right one");
+  throw Error("the names are exchanged: the projection_matrix of the left camera has " +
+              shortest_text((*left)[3]) + " as its fourth number, that of the right one " +
+              shortest_text((*right)[3]) + ", expected -fx * baseline for the right one");
 }
 
 Statement from_ros_pair(const RosPair& pair) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/core/number_text.hpp>
 #include <cairn/io/calibration_forms.hpp>
 #include <cairn/io/dataset.hpp>
 #include <cairn/io/frame_names.hpp>
@@ -425,7 +426,7 @@ void give_maps(std::vector<FrameFiles>& frames, const MapOptions& options) {
   if (!options.disparity.empty() && !options.depth.empty())
     throw Error("--depth-image: found --disparity as well, expected one of the two");
   if (units && !(*units >= 1 && *units <= 1e6)) {
-    throw Error("--depth-units: found " + written(*units) +
+    throw Error("--depth-units: found " + shortest_text(*units) +
                 ", expected units per metre, 1 ... 1e6 (1000: mm)");
   }
   if (!options.disparity.empty()) give_maps_in(options.disparity, "--disparity", frames, std::nullopt);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 the cairn authors
 #include <cairn/core/error.hpp>
+#include <cairn/core/number_text.hpp>
 #include <cairn/io/atomic_file.hpp>
 #include <cairn/io/calibration_forms.hpp>
 #include <cairn/io/raw_calibration.hpp>
@@ -16,14 +17,14 @@ std::string matrix_text(const char* name, int rows, std::span<const double> numb
   const int columns = static_cast<int>(numbers.size()) / rows;
   std::string text = std::string(name) + ": !!opencv-matrix\n   rows: " + std::to_string(rows) +
                      "\n   cols: " + std::to_string(columns) + "\n   dt: d\n   data: [ ";
-  for (std::size_t i = 0; i < numbers.size(); ++i) text += (i == 0 ? "" : ", ") + written(numbers[i]);
+  for (std::size_t i = 0; i < numbers.size(); ++i) text += (i == 0 ? "" : ", ") + shortest_text(numbers[i]);
   return text + " ]\n";
 }
 
 void check_camera(const RawCamera& camera, const std::string& name) {
   if (!(camera.matrix[0] > 0 && camera.matrix[4] > 0)) {
-    throw Error("the " + name + " camera has focal lengths " + written(camera.matrix[0]) + " and " +
-                written(camera.matrix[4]) + ", expected positive numbers");
+    throw Error("the " + name + " camera has focal lengths " + shortest_text(camera.matrix[0]) + " and " +
+                shortest_text(camera.matrix[4]) + ", expected positive numbers");
   }
   const std::size_t count = camera.distortion.size();
   if (camera.is_fisheye && count != 4) {

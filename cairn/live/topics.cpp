@@ -217,24 +217,38 @@ Message reject(const LiveFrame& frame, const MessageForm& form) {
   return ros::encode(ros::reject_of(header_of(frame, form), frame.step.frame));
 }
 
+/// nullopt if it is unknown, or the frame was not processed.
+std::optional<FloorFrame> floor_of(const LiveFrame& frame, const MessageForm& form) {
+  const Frame& found = frame.step.frame;
+  return found.space.empty() ? std::nullopt : floor_frame(found.ground, form.rig);
+}
+
+/// The steps of the ground, for all topics that show them.
+std::shared_ptr<const std::vector<GroundStep>> steps_of(const LiveFrame& frame, const MessageForm& form,
+                                                        const FloorFrame& floor) {
+  return frame.products.get("ground_steps", [&] {
+    return find_steps(frame.step.frame, floor, *form.rig, frame.config->segmentation.obstacles);
+  });
+}
+
 template <ObstacleLabel space>
 Message cloud(const LiveFrame& frame, const MessageForm& form) {
   const io::LoadedImage& image = frame.pair->left;
-  const Frame& found = frame.step.frame;
-  ros::PointCloud2 points =
-      ros::cloud_of(header_of(frame, form), found, space, form.rig, image.gray, image.rgb, form.cloud_stride);
+  ros::PointCloud2 points = ros::cloud_of(header_of(frame, form), frame.step.frame, space, form.rig,
+                                          image.gray, image.rgb, form.cloud_stride);
   if (space == ObstacleLabel::obstacle) {
-    if (const auto floor = floor_frame(found.ground, form.rig))
-      ros::add_steps(points, find_steps(found, *floor, *form.rig, frame.config->segmentation.obstacles),
-                     *floor);
+    if (const auto floor = floor_of(frame, form))
+      ros::add_steps(points, *steps_of(frame, form, *floor), *floor);
   }
   return ros::encode(points);
 }
 
 Message grid(const LiveFrame& frame, const MessageForm& form) {
-  const auto found = ros::grid_of(ros::header_of(frame.step.stamp, names_of(frame, form).floor),
-                                  frame.step.frame, form.rig, frame.config->segmentation.obstacles);
-  return found ? std::optional(ros::encode(*found)) : std::nullopt;
+  const auto floor = floor_of(frame, form);
+  if (!floor) return std::nullopt;
+  return ros::encode(ros::grid_of(ros::header_of(frame.step.stamp, names_of(frame, form).floor),
+                                  map_obstacles(frame.step.frame, *steps_of(frame, form, *floor), *floor,
+                                                *form.rig, frame.config->segmentation.obstacles)));
 }
 
 Message scene(const LiveFrame& frame, const MessageForm& form) {

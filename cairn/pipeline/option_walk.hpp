@@ -6,6 +6,7 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
+#include <cairn/core/number_text.hpp>
 #include <cairn/pipeline/config.hpp>
 #include <charconv>
 #include <cmath>
@@ -25,9 +26,7 @@ inline std::string write(bool value) {
 
 template <class Number>
 requires std::is_arithmetic_v<Number> std::string write(Number value) {
-  std::array<char, 64> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
+  return shortest_text(value);
 }
 
 template <class E, std::size_t N>

@@ -414,11 +414,7 @@ void add_steps(PointCloud2& cloud, const std::vector<GroundStep>& steps, const F
   }
 }
 
-std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,
-                                     const std::optional<StereoRig>& rig, const ObstaclesConfig& config) {
-  const auto floor = floor_frame(frame.ground, rig);
-  if (!floor || frame.space.empty()) return std::nullopt;
-  ObstacleGrid grid = map_obstacles(frame, *floor, *rig, config);
+OccupancyGrid grid_of(const Header& header, ObstacleGrid grid) {
   OccupancyGrid message;
   message.header = header;
   message.info.map_load_time = header.stamp;
@@ -428,6 +424,13 @@ std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,
   message.info.origin.position = {double{grid.origin_x_m}, double{grid.origin_y_m}, 0};
   message.data = std::move(grid.cells);
   return message;
+}
+
+std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,
+                                     const std::optional<StereoRig>& rig, const ObstaclesConfig& config) {
+  const auto floor = floor_frame(frame.ground, rig);
+  if (!floor || frame.space.empty()) return std::nullopt;
+  return grid_of(header, map_obstacles(frame, *floor, *rig, config));
 }
 
 std::optional<TransformStamped> floor_transform_of(Stamp stamp, const FrameNames& names, const Ground& ground,

@@ -88,7 +88,9 @@ PointCloud2 cloud_of(const Header& header, const Frame& frame, ObstacleLabel spa
 /// floor, which clears a costmap. `cloud`: of cloud_of().
 void add_steps(PointCloud2& cloud, const std::vector<GroundStep>& steps, const FloorFrame& floor);
 
-/// The obstacle grid (map_obstacles()); nullopt if no floor is known. `header`: in the floor's frame.
+/// A grid of map_obstacles(). `header`: in the floor's frame.
+OccupancyGrid grid_of(const Header& header, ObstacleGrid grid);
+/// That of a frame; nullopt if no floor is known.
 std::optional<OccupancyGrid> grid_of(const Header& header, const Frame& frame,
                                      const std::optional<StereoRig>& rig, const ObstaclesConfig& config);
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/core/number_text.hpp>
 #include <cairn/core/parallel.hpp>
 #include <cairn/scene/floor_kernels.hpp>
 #include <cairn/scene/floor_search.hpp>
 #include <cairn/scene/ground_plane.hpp>
 #include <cairn/scene/plane_through_pairs.hpp>
 #include <cairn/stereo/speckle.hpp>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -86,13 +86,8 @@ Ground ground_from_points(const std::vector<PointPair>& points) {
 void validate(const KnownGround& known) {
   const auto check = [](double value, const char* key, double lowest, double highest) {
     if (value >= lowest && value <= highest) return;
-    const auto text = [](double number) {
-      std::array<char, 32> written{};
-      return std::string(written.data(),
-                         std::to_chars(written.data(), written.data() + written.size(), number).ptr);
-    };
-    throw Error(std::string(key) + " is " + text(value) + ", expected " + text(lowest) + " ... " +
-                text(highest));
+    throw Error(std::string(key) + " is " + shortest_text(value) + ", expected " + shortest_text(lowest) +
+                " ... " + shortest_text(highest));
   };
   constexpr double kMinHeight = 0.01;
   constexpr double kMaxHeight = 100;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cairn/core/error.hpp>
 #include <cairn/core/nearest.hpp>
+#include <cairn/core/number_text.hpp>
 #include <cairn/tuning/tunable.hpp>
 #include <charconv>
 #include <cmath>
@@ -84,13 +85,8 @@ double number_of(const std::string& text) {
 }
 
 std::string text_of(double value, TunableKind kind) {
-  std::array<char, 64> buffer{};
-  char* const begin = buffer.data();
-  char* const end = begin + buffer.size();
-  const auto written = kind == TunableKind::whole_number
-                           ? std::to_chars(begin, end, std::llround(value))
-                           : std::to_chars(begin, end, static_cast<float>(value));
-  return {begin, written.ptr};
+  return kind == TunableKind::whole_number ? shortest_text(std::llround(value))
+                                           : shortest_text(static_cast<float>(value));
 }
 
 /// Rounds to three significant digits, for readability.

@@ -26,7 +26,9 @@ std::int64_t ns_of_steady_zero() {
   const auto ns = [](auto now) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(now.time_since_epoch()).count();
   };
-  return ns(std::chrono::system_clock::now()) - ns(Clock::now());
+  // In this order: if time passes between them, stamps are early, never in the future.
+  const auto since_1970 = ns(std::chrono::system_clock::now());
+  return since_1970 - ns(Clock::now());
 }
 
 template <class... Values>

@@ -3,8 +3,8 @@
 #include <cairn/live/view/parameters.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cairn/core/error.hpp>
+#include <cairn/core/number_text.hpp>
 #include <cairn/io/config_files.hpp>
 #include <cairn/output/json.hpp>
 #include <cairn/output/json_line.hpp>
@@ -53,11 +53,7 @@ std::string text_of(const OptionInfo& option, const nlohmann::json& value) {
   const auto number = value.get<double>();
   if (is_whole && (std::floor(number) != number || std::abs(number) > 1e9))
     refuse(option.name, value, "a whole number, " + option.domain);
-  std::array<char, 64> text{};
-  const char* const end =
-      is_whole ? std::to_chars(text.data(), text.data() + text.size(), static_cast<std::int64_t>(number)).ptr
-               : std::to_chars(text.data(), text.data() + text.size(), number).ptr;
-  return {static_cast<const char*>(text.data()), end};
+  return is_whole ? shortest_text(static_cast<std::int64_t>(number)) : shortest_text(number);
 }
 
 }  // namespace

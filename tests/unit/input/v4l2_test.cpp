@@ -593,6 +593,9 @@ TEST_F(TwoDevices, ArePairedByStampsAndTheRestIsCounted) {
     EXPECT_EQ(int{pair->left.gray(3, 2)}, byte(left.picture, 2 * 16 + 6));
     EXPECT_EQ(int{pair->right(3, 2)}, byte(right.picture, 2 * 16 + 6));
   }
+  const auto steady_zero =
+      std::chrono::system_clock::now().time_since_epoch() - Clock::now().time_since_epoch();
+  EXPECT_NEAR(static_cast<double>(stamps[0] - std::chrono::nanoseconds(steady_zero).count()) * 1e-6, 100, 50);
   EXPECT_EQ(stamps[1] - stamps[0], 33'000'000);
   EXPECT_EQ(stamps[2] - stamps[0], 100'000'000);
   EXPECT_EQ(source->status().unpaired, 2U);
